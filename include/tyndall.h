@@ -1,0 +1,386 @@
+/* tyndall.h - light one can see: shafts, shadows and haze, rendered by CPUs.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * This header is the manual. The library allocates nothing, keeps no state outside the memory that you give it, starts no
+ * threads and calls nothing of an operating system. It has two levels that can be linked and used apart:
+ *
+ *   (a) the rasterizer:    meshes            -> shadow maps, colour, depth       tyn_raster_...
+ *   (b) the post process:  depth, colour, shadow maps -> the picture with shafts  tyn_render
+ *
+ * An engine with a renderer of its own needs (b) alone.
+ *
+ * Conventions, everywhere:
+ *  - World space is right-handed; the unit of length is yours, "metres" below. Angles are radians.
+ *  - Pixel (0, 0) is the top left one; it is sampled at its centre (0.5, 0.5). Rows run downwards.
+ *  - Colours and light are linear RGB radiometric values: radiance W/(m2 sr), irradiance W/m2, intensity W/sr.
+ *  - "Depth" is view-space depth: the distance along the camera's forward axis, not along the ray.
+ *  - Matrices are row-major 4x4, applied to column vectors: out[r] = sum over c of m[4 * r + c] * in[c].
+ *  - A pointer is read only during the call it is given to, but for the memory given to an ..._init.
+ *  - Every call checks its arguments before it writes anything. A negative status means that nothing was written.
+ *    (One exception, because only the work itself shows it: TYN_E_EXECUTOR.)
+ *  - The output is finite for finite input, and the same bytes for any number of workers.
+ */
+#ifndef TYNDALL_H
+#define TYNDALL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TYN_VERSION_MAJOR 0
+#define TYN_VERSION_MINOR 1
+#define TYN_VERSION_PATCH 0
+#define TYN_VERSION "0.1.0"
+
+/* ---- status -------------------------------------------------------------------------------------------------------- */
+
+typedef enum tyn_status {
+    TYN_OK = 0,
+    TYN_E_NULL = -1,     /* a required pointer is NULL */
+    TYN_E_CONFIG = -2,   /* a field of a config is outside its range */
+    TYN_E_MEMORY = -3,   /* the block is smaller than ..._measure says */
+    TYN_E_ALIGN = -4,    /* the block is not aligned to TYN_ALIGNMENT, or pixels are not aligned to their components */
+    TYN_E_IMAGE = -5,    /* an image has a wrong size, format or stride */
+    TYN_E_CAMERA = -6,   /* camera: not finite, axes not orthonormal, empty window, or not 0 < near < far */
+    TYN_E_LIGHT = -7,    /* light: not finite, colour < 0, direction not of length 1, angle or shadow map out of range */
+    TYN_E_MEDIUM = -8,   /* medium: not finite, coefficient < 0, or g outside -1 .. 1 */
+    TYN_E_MESH = -9,     /* mesh: index out of range, or a material out of range */
+    TYN_E_DISPLAY = -10, /* display: not finite, exposure < 0, or an unknown tone curve */
+    TYN_E_LIMIT = -11,   /* more lights, or a larger image or shadow map, than the config has room for */
+    TYN_E_EXECUTOR = -12 /* the executor did not run each job once, or used a worker number out of range; output undefined */
+} tyn_status;
+
+/* The name of a status as a constant string, such as "TYN_E_CAMERA"; "TYN_E_UNKNOWN" for a number that is none. */
+const char *tyn_status_name(tyn_status status);
+
+/* "0.1.0": of the library that is linked, for comparison with TYN_VERSION. */
+const char *tyn_version(void);
+
+/* ---- work in parallel ---------------------------------------------------------------------------------------------- */
+
+/* One job of a stage. `index` counts 0 .. count - 1; `worker` is 0 .. workers - 1. */
+typedef void (*tyn_job)(void *argument, int32_t index, int32_t worker);
+
+/* How the library runs its jobs. A NULL executor runs them in the calling thread, in order.
+ * `run` must call job(argument, i, w) exactly once for every i in 0 .. count - 1, in any order, on any thread, and return
+ * when all have returned. Two calls at the same time must have different w, and what a finished call wrote must be visible
+ * to the caller when `run` returns. Jobs are independent: any order gives the same bytes. */
+typedef struct tyn_executor {
+    void (*run)(void *context, tyn_job job, void *argument, int32_t count);
+    void *context;   /* handed to run; may be NULL */
+    int32_t workers; /* 1 .. workers of the config: w is below this */
+} tyn_executor;
+
+/* A clock for the statistics: nanoseconds from any fixed origin. NULL: no times are taken. */
+typedef uint64_t (*tyn_clock)(void *context);
+
+/* ---- images -------------------------------------------------------------------------------------------------------- */
+
+typedef enum tyn_format {
+    TYN_FORMAT_NONE = 0,
+    TYN_RGB_F32 = 1,      /* 3 floats, linear */
+    TYN_RGBA8_SRGB = 2,   /* bytes R G B A, sRGB encoded; A is written as 255 */
+    TYN_BGRA8_SRGB = 3,   /* bytes B G R A, else the same */
+    TYN_RGB565_SRGB = 4,  /* uint16_t of the machine's byte order, red in the high 5 bits, sRGB encoded */
+    TYN_DEPTH_F32 = 5,    /* float, view-space depth in metres */
+    TYN_RGB8_LINEAR = 6,  /* bytes R G B, value / 255; textures */
+    TYN_RGB16_LINEAR = 7, /* uint16_t R G B, value / 65535; textures */
+    TYN_MASK8 = 8         /* one byte; textures that cut holes: below 128 is a hole */
+} tyn_format;
+
+/* A picture in the caller's memory. pixels == NULL stands for "none" where an image is optional. */
+typedef struct tyn_image {
+    void *pixels;     /* the top left pixel; aligned to the format's component (4 for floats, 2 for 16 bit) */
+    int32_t width;    /* 1 .. TYN_MAX_SIZE */
+    int32_t height;   /* 1 .. TYN_MAX_SIZE */
+    ptrdiff_t stride; /* bytes from one row to the next, a multiple of the alignment; negative: bottom row first in memory;
+                         0: rows follow one another without a gap */
+    tyn_format format;
+} tyn_image;
+
+#define TYN_MAX_SIZE 32768
+
+/* Bytes of one pixel; 0 for a format that is none. */
+int32_t tyn_format_bytes(tyn_format format);
+
+/* ---- camera -------------------------------------------------------------------------------------------------------- */
+
+/* A pinhole. The pixel plane is the window left .. right, bottom .. top at depth 1; it need not be centred. */
+typedef struct tyn_camera {
+    float position[3];
+    float right[3]; /* right, up, forward: of length 1 and at right angles, within 1e-3 */
+    float up[3];
+    float forward[3];                                   /* the way the camera looks */
+    float left_edge, right_edge, bottom_edge, top_edge; /* left < right, bottom < top; symmetric: -x, x, -y, y */
+    float near_depth; /* geometry nearer than this is not seen (it still casts shadows); > 0 */
+    float far_depth;  /* view rays end at this depth where nothing is hit; > near */
+} tyn_camera;
+
+/* Sets all of *camera: at `position`, looking at `target`, turned such that `up` is up, full vertical angle `fov_y`
+ * (0 < fov_y < pi), square pixels in an image of width x height. TYN_E_CAMERA where that gives no camera (see the struct;
+ * target at position, up parallel to the view), TYN_E_NULL. */
+tyn_status tyn_camera_look(tyn_camera *camera, const float position[3], const float target[3], const float up[3], float fov_y,
+                           float near_depth, float far_depth, int32_t width, int32_t height);
+
+/* ---- medium -------------------------------------------------------------------------------------------------------- */
+
+typedef enum tyn_phase {
+    TYN_PHASE_ISOTROPIC = 0, /* 1 / (4 pi) */
+    TYN_PHASE_RAYLEIGH = 1,  /* 3 / (16 pi) (1 + cos2) */
+    TYN_PHASE_HG = 2         /* Henyey and Greenstein: (1 - g2) / (4 pi (1 + g2 - 2 g cos)^1.5) */
+} tyn_phase;
+
+/* One component of a homogeneous medium that fills all space; several add up, each with its own phase function.
+ * Extinction is the sum of scatter and absorb of all. No medium at all, or one of zeros, is clear air: no shafts. */
+typedef struct tyn_medium {
+    float scatter[3]; /* 1/m, RGB, >= 0 */
+    float absorb[3];  /* 1/m, RGB, >= 0 */
+    tyn_phase phase;
+    float g; /* -1 < g < 1, of TYN_PHASE_HG; g > 0 scatters forward: bright towards the light. Ignored by the others */
+} tyn_medium;
+
+#define TYN_MAX_MEDIA 8
+
+/* IVB's air at sea level (IVB section 6.8): media[0] Rayleigh, media[1] haze with g = 0.76, both multiplied by `scale`
+ * (1 is the earth's air: shafts over kilometres. Small scenes want 100 and more). TYN_E_NULL, TYN_E_MEDIUM (scale < 0). */
+tyn_status tyn_medium_air(tyn_medium media[2], float scale);
+
+/* ---- light and its shadow map -------------------------------------------------------------------------------------- */
+
+/* A shadow map: for each texel the surface nearest to the light.
+ * `matrix` takes a world point to (U, V, Z, W), W > 0 in front of the light: u = U / W and v = V / W are 0 .. 1 from the
+ * left and from the top row; z = Z / W is 1 nearest to the light and falls with the distance from it, 0 at the far end.
+ * A texel holds the largest z that its centre sees; 0: nothing, all lit; values above 1 count as 1.
+ * z must be a projective depth (linear on planes in u and v): linear distance for a parallel projection, near / distance for a
+ * perspective one. Outside the map all is lit (directional) or dark (spot). */
+typedef struct tyn_shadow {
+    const float *depth; /* size * size floats, rows without a gap; NULL: no shadows from this light */
+    int32_t size;       /* texels, 1 .. TYN_MAX_SHADOW; 0 with depth == NULL */
+    float matrix[16];   /* must be invertible where depth is given */
+} tyn_shadow;
+
+#define TYN_MAX_SHADOW 16384
+
+typedef enum tyn_light_kind { TYN_LIGHT_DIRECTIONAL = 0, TYN_LIGHT_SPOT = 1 } tyn_light_kind;
+
+typedef struct tyn_light {
+    tyn_light_kind kind;
+    float position[3];  /* spot only */
+    float direction[3]; /* the way the light travels (a spot's axis), of length 1 within 1e-3 */
+    float colour[3];    /* directional: irradiance on a plane facing the light; spot: radiant intensity. RGB, >= 0 */
+    float angle;        /* spot: full angle of the cone, 0 < angle < 170 degrees (2.96706); its edge is hard */
+    tyn_shadow shadow;
+} tyn_light;
+
+/* Sets light->shadow.matrix (nothing else) for rendering or reading a map of this light: for a spot the cone's square frustum,
+ * for a directional light the smallest rectangle, turned about the light's direction, around what the camera can see of the box
+ * bounds_min .. bounds_max and what in the box can shadow it. The box holds all geometry. bounds may be NULL both: all that the
+ * camera can see. TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MESH (bounds not finite or min > max). */
+tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const float bounds_min[3], const float bounds_max[3]);
+
+/* ---- display ------------------------------------------------------------------------------------------------------- */
+
+typedef enum tyn_tone {
+    TYN_TONE_CLAMP = 0, /* min(x, 1) per channel */
+    TYN_TONE_FILM = 1   /* 1 - exp(-x) per channel: photographic film, bright light rolls off to white */
+} tyn_tone;
+
+/* From radiance to the target's format. TYN_RGB_F32 targets take the exposure alone: no tone curve, dither or encoding. */
+typedef struct tyn_display {
+    float exposure; /* multiplies radiance, >= 0; 0 means 1 */
+    tyn_tone tone;
+    int32_t dither; /* not 0: ordered 8x8 dither of one step of the target's format, against banding in fog */
+} tyn_display;
+
+/* Encodes a linear image (TYN_RGB_F32) into `target`, as tyn_render does with its result. Same size; needs no context.
+ * TYN_E_NULL, TYN_E_IMAGE, TYN_E_ALIGN, TYN_E_DISPLAY. */
+tyn_status tyn_encode(const tyn_image *linear, const tyn_display *display, const tyn_image *target);
+
+/* ---- level (b): the post process ----------------------------------------------------------------------------------- */
+
+typedef enum tyn_method {
+    TYN_METHOD_EPIPOLAR = 0,  /* the default: rays along epipolar slices, interpolated (ED10, IVB and beyond) */
+    TYN_METHOD_MARCH = 1,     /* a ray for each pixel: the truth that the others are held against */
+    TYN_METHOD_SUBSAMPLE = 2, /* a ray for each point of a coarse grid, bilateral up-sampling (ED10's naive comparison) */
+    TYN_METHOD_NONE = 3       /* no scattered light; the surface is attenuated all the same */
+} tyn_method;
+
+typedef enum tyn_rays {
+    TYN_RAYS_WORDS = 0, /* exact on the map's texels; in slices on the row of thresholds, as packed visibility words */
+    TYN_RAYS_STEPS = 1  /* fixed steps, sampled in the middle of each (ED10) */
+} tyn_rays;
+
+typedef enum tyn_preset {
+    TYN_PRESET_HANDHELD = 0,
+    TYN_PRESET_BALANCED = 1,
+    TYN_PRESET_QUALITY = 2, /* the default of a zeroed config */
+    TYN_PRESET_REFERENCE = 3
+} tyn_preset;
+
+/* What a context is made for. Zero all of it, set width and height (or call tyn_config_preset), change what you like. */
+typedef struct tyn_config {
+    int32_t width; /* pixels, 1 .. TYN_MAX_SIZE: the largest image; a frame may be smaller */
+    int32_t height;
+    int32_t slices;        /* epipolar slices, 2 .. 65536; 0: as TYN_PRESET_QUALITY */
+    int32_t samples;       /* samples along a slice, at most: one per pixel column (row), each 2nd, 4th ... so that they
+                              fit; 2 .. 65536; 0: all */
+    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: 16 */
+    float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
+    int32_t shadow_size;   /* largest shadow map of a frame, texels, 1 .. TYN_MAX_SHADOW; 0: 2048 */
+    int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
+    tyn_method method;
+    tyn_rays rays;
+    int32_t lights;  /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
+    int32_t workers; /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
+} tyn_config;
+
+#define TYN_MAX_LIGHTS 16
+#define TYN_MAX_WORKERS 64
+
+/* Fills all of *config for an image size. TYN_E_NULL, TYN_E_CONFIG (size or preset). */
+tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t width, int32_t height);
+
+/* Memory for a context. *bytes is exact; the block must be aligned to TYN_ALIGNMENT. TYN_E_NULL, TYN_E_CONFIG. */
+tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
+#define TYN_ALIGNMENT 64
+
+typedef struct tyn_context tyn_context;
+
+/* Places a context in the caller's block and gives its address (it starts there). The block belongs to the context until you
+ * use it for something else; there is nothing to free. The config is copied. No render call keeps anything in it that the next
+ * one reads. TYN_E_NULL, TYN_E_CONFIG, TYN_E_MEMORY, TYN_E_ALIGN. */
+tyn_status tyn_init(tyn_context **context, const tyn_config *config, void *memory, size_t bytes);
+
+/* What happened in a frame. Sums over lights and workers; deterministic but for the times. */
+typedef struct tyn_stats {
+    int64_t pixels;
+    int64_t slices;     /* slices that cross the screen */
+    int64_t samples;    /* samples on them */
+    int64_t breaks;     /* discontinuities of depth between neighbouring samples */
+    int64_t rays;       /* rays integrated along slices (march: per pixel; subsample: per grid point) */
+    int64_t walks;      /* of these, near the epipole: exact walks over the map's texels */
+    int64_t rejected;   /* pixels that no sample fits, computed by a ray of their own */
+    float rays_percent; /* (rays + rejected) in percent of the pixels */
+    size_t memory;      /* bytes of the context */
+    uint64_t slice_ns;  /* slices: depth, breaks, rows, rays, interpolation; 0 without a clock */
+    uint64_t gather_ns; /* pixels: reconstruction, rejected pixels, composite */
+    uint64_t total_ns;
+} tyn_stats;
+
+typedef enum tyn_debug {
+    TYN_DEBUG_NONE = 0,
+    TYN_DEBUG_LINES = 1,    /* the slices' lines over the darkened picture */
+    TYN_DEBUG_SAMPLES = 2,  /* ray samples: initial ones white, those at breaks green */
+    TYN_DEBUG_BREAKS = 3,   /* samples at breaks, green */
+    TYN_DEBUG_SCATTER = 4,  /* the texture of visibility: a row is a slice, a column a sample */
+    TYN_DEBUG_REJECTED = 5, /* pixels with a ray of their own, red */
+    TYN_DEBUG_OUTSIDE = 6   /* surface points outside the first light's shadow map, magenta */
+} tyn_debug;
+
+/* One frame. Zero all of it, set what you need. */
+typedef struct tyn_frame {
+    tyn_camera camera;
+    tyn_image depth;  /* required: TYN_DEPTH_F32. Values are clamped to 0 .. far; infinity and NaN mean far (sky) */
+    tyn_image colour; /* radiance of the surfaces without medium: TYN_RGB_F32, or an 8-bit or 565 format, decoded as sRGB with 1
+                         = display white. May share pixels, stride and format with target (in place). pixels NULL: black.
+                         In TYN_RGB_F32 negative values and NaN mean 0 */
+    tyn_image target; /* the picture; pixels NULL: none wanted. Not TYN_DEPTH_F32, not a texture format */
+    tyn_image scatter;       /* L_scat as TYN_RGB_F32, without exposure; pixels NULL: none wanted */
+    const tyn_light *lights; /* light_count of them, 0 .. config.lights; NULL with 0 */
+    int32_t light_count;
+    const tyn_medium *media; /* medium_count of them, 0 .. TYN_MAX_MEDIA; NULL with 0 */
+    int32_t medium_count;
+    tyn_display display;
+    tyn_debug debug;              /* drawn into target instead of the picture */
+    const tyn_executor *executor; /* NULL: the calling thread */
+    tyn_clock clock;              /* NULL: no times */
+    void *clock_context;
+    tyn_stats *stats; /* NULL: not wanted */
+} tyn_frame;
+
+/* Renders L = exp(-extinction s) colour + L_scat into target. All images have the depth image's size, at most the config's.
+ * TYN_E_NULL, TYN_E_IMAGE, TYN_E_ALIGN, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MEDIUM, TYN_E_DISPLAY, TYN_E_LIMIT, TYN_E_EXECUTOR. */
+tyn_status tyn_render(tyn_context *context, const tyn_frame *frame);
+
+/* ---- level (a): the rasterizer ------------------------------------------------------------------------------------- */
+
+typedef struct tyn_material {
+    float albedo[3];          /* 0 .. 1; multiplied by the texture */
+    const tyn_image *texture; /* TYN_RGB8_LINEAR, TYN_RGB16_LINEAR or TYN_RGB_F32; bilinear, repeats; NULL: none */
+    const tyn_image *mask;    /* TYN_MASK8, nearest texel, repeats; cuts holes for the camera and for shadows; NULL: none */
+} tyn_material;
+
+/* Triangles of one material. All are seen, and cast shadows, from both sides. A triangle with a corner that is not finite is
+ * left out and counted. Flat shading: the normal is the triangle's own. */
+typedef struct tyn_mesh {
+    const float *positions;  /* 3 per vertex, world space */
+    const float *texcoords;  /* 2 per vertex, (0, 0) is the texture's bottom left corner; NULL: texture and mask are ignored */
+    const uint32_t *indices; /* 3 per triangle, each < vertices */
+    uint32_t vertices;
+    uint32_t triangles; /* 0 is legal */
+    tyn_material material;
+} tyn_mesh;
+
+typedef struct tyn_raster_config {
+    int32_t width; /* pixels, 1 .. TYN_MAX_SIZE: the largest image or shadow map that is drawn */
+    int32_t height;
+    int32_t batch;   /* triangles that go through together, 64 .. 65536; 0: 2048 */
+    int32_t workers; /* 1 .. TYN_MAX_WORKERS; 0: 1 */
+} tyn_raster_config;
+
+typedef struct tyn_raster tyn_raster;
+
+/* As tyn_measure and tyn_init. */
+tyn_status tyn_raster_measure(const tyn_raster_config *config, size_t *bytes);
+tyn_status tyn_raster_init(tyn_raster **raster, const tyn_raster_config *config, void *memory, size_t bytes);
+
+typedef struct tyn_raster_stats {
+    int64_t triangles; /* given */
+    int64_t drawn;     /* left after clipping and culling: pieces that cover at least one sample */
+    int64_t bad;       /* not finite, left out */
+    int64_t pixels;    /* that passed the depth test */
+    uint64_t total_ns; /* 0 without a clock */
+} tyn_raster_stats;
+
+/* The scene as the rasterizer sees it. */
+typedef struct tyn_surface {
+    tyn_camera camera;
+    const tyn_mesh *meshes; /* mesh_count of them; NULL with 0 */
+    int32_t mesh_count;
+    const tyn_light *lights; /* with rendered shadow maps; light_count of them, 0 .. TYN_MAX_LIGHTS */
+    int32_t light_count;
+    const tyn_medium
+        *media; /* dims spots on their way to the surface (the way to the camera is tyn_render's); may be NULL with 0 */
+    int32_t medium_count;
+    float ambient[3];             /* irradiance, unshadowed, >= 0 */
+    float background[3];          /* radiance where nothing is hit, >= 0 */
+    float shadow_bias;            /* texels; 0: 1.5. How far a surface must lie behind the map's before it is in shadow */
+    tyn_image colour;             /* out: radiance of the surfaces, TYN_RGB_F32; pixels NULL: not wanted */
+    tyn_image depth;              /* out: TYN_DEPTH_F32, far_depth where nothing is hit; required; same size as colour */
+    const tyn_executor *executor; /* NULL: the calling thread */
+    tyn_clock clock;
+    void *clock_context;
+    tyn_raster_stats *stats; /* NULL: not wanted */
+} tyn_surface;
+
+/* Draws the meshes as the camera sees them. Lambert: albedo / pi (ambient + sum over lights of E max(0, n l) V).
+ * TYN_E_NULL, TYN_E_IMAGE, TYN_E_ALIGN, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MEDIUM, TYN_E_MESH, TYN_E_LIMIT, TYN_E_EXECUTOR. */
+tyn_status tyn_raster_surface(tyn_raster *raster, const tyn_surface *surface);
+
+/* Draws the meshes into `depth` (shadow->size squared floats) as shadow->matrix sees them; shadow->depth is not read, so that
+ * it may be the same memory. Geometry nearer to the light than the map's near end is clamped to 1, not clipped: blockers
+ * outside the view still cast. executor, clock and stats may be NULL. TYN_E_NULL, TYN_E_LIGHT (size or matrix), TYN_E_MESH,
+ * TYN_E_LIMIT, TYN_E_EXECUTOR. */
+tyn_status tyn_raster_shadow(tyn_raster *raster, const tyn_shadow *shadow, float *depth, const tyn_mesh *meshes,
+                             int32_t mesh_count, const tyn_executor *executor, tyn_clock clock, void *clock_context,
+                             tyn_raster_stats *stats);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

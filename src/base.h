@@ -1,0 +1,132 @@
+/* base.h - what every room shares: fixed-size types, small helpers, bit scans. */
+#ifndef TYNI_BASE_H
+#define TYNI_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "tyndall.h"
+
+/* One picture on every machine: a * b + c must round twice. gcc in ISO mode (-std=c99) and with -ffp-contract=off never fuses;
+ * clang listens to the pragma. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#endif
+
+/* A broken rule inside the library, never bad input: that is checked at the door and gets a status. */
+#ifdef TYN_ASSERT
+#define TYNI_ASSERT(condition) TYN_ASSERT(condition)
+#else
+#define TYNI_ASSERT(condition) ((void)0)
+#endif
+
+#define TYNI_PI 3.14159265358979f
+
+static inline int32_t tyni_mini(int32_t a, int32_t b)
+{
+    return a < b ? a : b;
+}
+static inline int32_t tyni_maxi(int32_t a, int32_t b)
+{
+    return a > b ? a : b;
+}
+static inline int32_t tyni_clampi(int32_t x, int32_t low, int32_t high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* NaN in the first argument gives the second: what keeps NaN from spreading. */
+static inline float tyni_minf(float a, float b)
+{
+    return a < b ? a : b;
+}
+static inline float tyni_maxf(float a, float b)
+{
+    return a > b ? a : b;
+}
+static inline float tyni_absf(float x)
+{
+    return x < 0.0f ? -x : x;
+}
+/* NaN gives low. */
+static inline float tyni_clampf(float x, float low, float high)
+{
+    return x > low ? (x < high ? x : high) : low;
+}
+
+/* Not NaN and not infinite. */
+static inline int tyni_finite(float x)
+{
+    return x - x == 0.0f;
+}
+
+static inline uint32_t tyni_float_bits(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline float tyni_bits_float(uint32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* Towards minus infinity, for |x| < 2^31. */
+static inline int32_t tyni_floori(float x)
+{
+    int32_t i = (int32_t)x;
+    return i - ((float)i > x);
+}
+
+static inline int32_t tyni_ceili(float x)
+{
+    int32_t i = (int32_t)x;
+    return i + ((float)i < x);
+}
+
+/* Plain C twins of the bit scans; tests hold the builtins against them. x != 0. */
+static inline int32_t tyni_ctz32_plain(uint32_t x)
+{
+    int32_t n = 0;
+    while (!(x & 1u)) {
+        x >>= 1;
+        n++;
+    }
+    return n;
+}
+
+static inline int32_t tyni_clz32_plain(uint32_t x)
+{
+    int32_t n = 0;
+    while (!(x & 0x80000000u)) {
+        x <<= 1;
+        n++;
+    }
+    return n;
+}
+
+#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
+static inline int32_t tyni_ctz32(uint32_t x)
+{
+    return (int32_t)__builtin_ctz(x);
+}
+static inline int32_t tyni_clz32(uint32_t x)
+{
+    return (int32_t)__builtin_clz(x);
+}
+#else
+static inline int32_t tyni_ctz32(uint32_t x)
+{
+    return tyni_ctz32_plain(x);
+}
+static inline int32_t tyni_clz32(uint32_t x)
+{
+    return tyni_clz32_plain(x);
+}
+#endif
+
+#endif

@@ -1,0 +1,27 @@
+/* check.h - arguments at the door: what both levels of the public API must check before they write anything. */
+#ifndef TYNI_CHECK_H
+#define TYNI_CHECK_H
+
+#include "base.h"
+
+#define TYNI_FORMAT_BIT(format) (1u << (format))
+
+/* Size, stride, alignment, and a format out of the set `formats` (of TYNI_FORMAT_BIT). pixels must not be NULL. */
+tyn_status tyni_check_image(const tyn_image *image, uint32_t formats);
+
+/* Bytes from row to row with stride 0 resolved. */
+ptrdiff_t tyni_image_stride(const tyn_image *image);
+
+/* Address of a row. */
+void *tyni_image_row(const tyn_image *image, int32_t y);
+
+tyn_status tyni_check_camera(const tyn_camera *camera);
+tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t shadow_limit);
+tyn_status tyni_check_media(const tyn_medium *media, int32_t count);
+tyn_status tyni_check_display(const tyn_display *display);
+
+/* All of n floats finite; and not below 0. */
+int tyni_check_finite(const float *v, int32_t n);
+int tyni_check_colour(const float v[3]);
+
+#endif

@@ -1,0 +1,24 @@
+/* test.h - the checks of tyndall's tests: each failed CHECK prints its place and its text and is counted. */
+#ifndef TYN_TEST_H
+#define TYN_TEST_H
+
+#include <stdint.h>
+
+/* One room's tests: tests/test_<room>.c defines `void test_<room>(void)`, tests/main.c calls it. */
+
+/* Starts a named test; the checks that follow belong to it. One test counts as one passed or failed. */
+void test_begin(const char *name);
+void test_check(int passed, const char *file, int line, const char *text);
+void test_skip(const char *why); /* prints SKIPPED and the reason; the test counts as neither */
+
+/* Reproducible random numbers; the seed is printed and can be given as TYN_SEED in the environment. */
+uint32_t test_random(void);
+float test_random_float(float low, float high);
+
+#define TEST(name) test_begin(name)
+#define CHECK(condition) test_check(!!(condition), __FILE__, __LINE__, #condition)
+/* |a - b| <= tolerance; prints both. */
+#define CHECK_NEAR(a, b, tolerance) test_near((double)(a), (double)(b), (double)(tolerance), __FILE__, __LINE__, #a " ~ " #b)
+void test_near(double a, double b, double tolerance, const char *file, int line, const char *text);
+
+#endif
