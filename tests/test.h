@@ -21,4 +21,13 @@ float test_random_float(float low, float high);
 #define CHECK_NEAR(a, b, tolerance) test_near((double)(a), (double)(b), (double)(tolerance), __FILE__, __LINE__, #a " ~ " #b)
 void test_near(double a, double b, double tolerance, const char *file, int line, const char *text);
 
+/* The path of a shared file, such as "reference/01_pillars.scene": below TYN_SHARED in the environment, else below ../shared.
+ * NULL, after a test_skip of the running test, where it is not there. Valid until the next call. */
+const char *test_shared(const char *path);
+
+/* For tests/main.c. */
+void test_seed(uint32_t seed);             /* starts the random numbers of a room */
+void test_end(void);                       /* closes the running test */
+void test_count(int *passed, int *failed); /* so far */
+
 #endif

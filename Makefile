@@ -1,0 +1,125 @@
+# tyndall. `make` builds the library and the tool; `make help` lists the rest. Needs a C compiler and make, nothing else.
+
+ifeq ($(origin CC),default)
+CC = gcc
+endif
+CFLAGS ?= -O2
+B ?= build
+PREFIX ?= /usr/local
+DESTDIR ?=
+
+# No contraction: a fused multiply-add rounds once where others round twice, and the pictures must be the same everywhere.
+WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
+FLAGS = -std=c99 $(WARNINGS) -ffp-contract=off -Iinclude -Isrc $(CFLAGS)
+POSIX = -D_POSIX_C_SOURCE=200809L -pthread -Iports/posix
+VERSION := $(shell sed -n 's/^.define TYN_VERSION "\(.*\)"/\1/p' include/tyndall.h)
+
+LIB_SRC := $(wildcard src/*.c src/*/*.c)
+PORT_SRC := $(wildcard ports/posix/*.c)
+TEST_SRC := $(filter-out tests/bench.c tests/fuzz_%.c,$(wildcard tests/*.c))
+OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
+C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch])
+
+.PHONY: all run test check-all bench golden install uninstall single format format-check clean help FORCE
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+all: $(B)/libtyndall.a $(B)/tyndall
+
+run: all
+	$(B)/tyndall showcase $(B)
+
+test: all $(B)/tests
+	@B=$(B) CC="$(CC)" CFLAGS="$(CFLAGS)" MAKE="$(MAKE)" sh tests/run.sh
+
+check-all:
+	@MAKE="$(MAKE)" sh tests/check-all.sh
+
+bench: $(B)/bench
+	$(B)/bench
+
+# Rewrites tests/golden.txt and puts the pictures where one can look at them.
+golden: $(B)/tests
+	mkdir -p $(B)/golden
+	TYN_GOLDEN=$(B)/golden $(B)/tests golden
+
+# ---- build ---------------------------------------------------------------------------------------------------------------
+
+$(B)/libtyndall.a: $(call OBJ,$(LIB_SRC)) $(B)/sources
+	rm -f $@
+	$(AR) rcs $@ $(filter %.o,$^)
+
+# The port as an archive: the tests take from it what they use, but not its main.
+$(B)/libport.a: $(call OBJ,$(PORT_SRC)) $(B)/sources
+	rm -f $@
+	$(AR) rcs $@ $(filter %.o,$^)
+
+$(B)/tyndall: $(call OBJ,$(PORT_SRC)) $(B)/libtyndall.a
+	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+
+$(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
+	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+
+$(B)/bench: $(call OBJ,tests/bench.c) $(B)/libport.a $(B)/libtyndall.a
+	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+
+$(B)/obj/src/%.o: src/%.c $(B)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) -MMD -MP -c -o $@ $<
+
+$(B)/obj/%.o: %.c $(B)/flags
+	@mkdir -p $(@D)
+	$(CC) $(FLAGS) $(POSIX) -I$(B) -MMD -MP -c -o $@ $<
+
+# Each tests/test_ROOM.c has a test_ROOM(); tests/main.c runs those listed here.
+$(B)/rooms.h: $(B)/sources
+	printf 'ROOM(%s)\n' $(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)) >$@
+$(B)/obj/tests/main.o: $(B)/rooms.h
+
+# Written only when they change, so that other flags, or a file that came or went, rebuild what they must.
+$(B)/flags: FORCE
+	@mkdir -p $(B); echo '$(CC) $(FLAGS)' | cmp -s - $@ || echo '$(CC) $(FLAGS)' >$@
+$(B)/sources: FORCE
+	@mkdir -p $(B); echo '$(LIB_SRC) $(PORT_SRC) $(TEST_SRC)' | cmp -s - $@ || echo '$(LIB_SRC) $(PORT_SRC) $(TEST_SRC)' >$@
+
+-include $(patsubst %.o,%.d,$(call OBJ,$(LIB_SRC) $(PORT_SRC) $(TEST_SRC) tests/bench.c))
+
+# ---- deliver -------------------------------------------------------------------------------------------------------------
+
+# The whole library as two files to drop into a project.
+single:
+	@mkdir -p $(B)/single
+	cp include/tyndall.h $(B)/single/tyndall.h
+	sh tests/single.sh >$(B)/single/tyndall.c
+
+install: all
+	mkdir -p $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(PREFIX)/lib/pkgconfig $(DESTDIR)$(PREFIX)/bin
+	cp include/tyndall.h $(DESTDIR)$(PREFIX)/include/tyndall.h
+	cp $(B)/libtyndall.a $(DESTDIR)$(PREFIX)/lib/libtyndall.a
+	cp $(B)/tyndall $(DESTDIR)$(PREFIX)/bin/tyndall
+	printf '%s\n' 'prefix=$(PREFIX)' 'Name: tyndall' 'Description: Light shafts on CPUs' 'Version: $(VERSION)' \
+	    'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -ltyndall -lm' >$(DESTDIR)$(PREFIX)/lib/pkgconfig/tyndall.pc
+
+uninstall:
+	rm -f $(DESTDIR)$(PREFIX)/include/tyndall.h $(DESTDIR)$(PREFIX)/lib/libtyndall.a $(DESTDIR)$(PREFIX)/bin/tyndall \
+	    $(DESTDIR)$(PREFIX)/lib/pkgconfig/tyndall.pc
+
+format:
+	clang-format -i $(C_FILES)
+format-check:
+	clang-format --dry-run -Werror $(C_FILES)
+
+clean:
+	rm -rf $(B)
+
+help:
+	@echo 'make            the library build/libtyndall.a and the tool build/tyndall'
+	@echo 'make run        renders the built-in scenes as PNGs under build/'
+	@echo 'make test       all tests, under a minute'
+	@echo 'make check-all  the tests under other compilers, optimisers and sanitizers, about a quarter of an hour'
+	@echo 'make bench      times against a plain pass over the pixels'
+	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
+	@echo 'make single     the library as two files, build/single/tyndall.[ch]'
+	@echo 'make install    to PREFIX=/usr/local, below DESTDIR; make uninstall takes it away again'
+	@echo 'make format     clang-format on every file; make clean'
+	@echo 'CC, CFLAGS and B (the build folder) can be given: make CC=clang CFLAGS=-O3 B=build/clang'

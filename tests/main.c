@@ -1,0 +1,59 @@
+/* main.c - runs the rooms' tests: all, or those named on the command line. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "test.h"
+
+#define ROOM(name) void test_##name(void);
+#include "rooms.h"
+#undef ROOM
+
+static const struct {
+    const char *name;
+    void (*run)(void);
+} rooms[] = {
+#define ROOM(name) {#name, test_##name},
+#include "rooms.h"
+};
+
+static int wanted(const char *name, int argc, char **argv)
+{
+    for (int i = 1; i < argc; i++)
+        if (strcmp(argv[i], name) == 0)
+            return 1;
+    return argc < 2;
+}
+
+int main(int argc, char **argv)
+{
+    const char *given = getenv("TYN_SEED");
+    unsigned long seed = given ? strtoul(given, NULL, 0) : (unsigned long)time(NULL);
+    const int count = (int)(sizeof rooms / sizeof *rooms);
+    int passed = 0, failed = 0, found = 0;
+    printf("seed %lu (TYN_SEED)\n", seed & 0xffffffffu);
+    for (int r = 0; r < count; r++) {
+        int before_passed = passed, before_failed = failed;
+        clock_t start = clock();
+        if (!wanted(rooms[r].name, argc, argv))
+            continue;
+        found++;
+        test_seed((uint32_t)seed); /* for each room anew: one run alone sees what it saw among the others */
+        rooms[r].run();
+        test_end();
+        test_count(&passed, &failed);
+        printf("%-12s %3d passed, %d failed, %.1f s\n", rooms[r].name, passed - before_passed, failed - before_failed,
+               (double)(clock() - start) / CLOCKS_PER_SEC);
+        fflush(stdout);
+    }
+    if (found < argc - 1) {
+        printf("FAILED: no such room; there are:");
+        for (int r = 0; r < count; r++)
+            printf(" %s", rooms[r].name);
+        printf("\n");
+        failed++;
+    }
+    printf("%d passed, %d failed\n", passed, failed);
+    return failed != 0;
+}
