@@ -1,0 +1,194 @@
+/* check.c - see check.h */
+#include "check.h"
+
+#include "base.h"
+
+int tyni_check_finite(const float *v, int32_t n)
+{
+    for (int32_t i = 0; i < n; i++)
+        if (!tyni_finite(v[i]))
+            return 0;
+    return 1;
+}
+
+int tyni_check_colour(const float v[3])
+{
+    return tyni_check_finite(v, 3) && v[0] >= 0.0f && v[1] >= 0.0f && v[2] >= 0.0f;
+}
+
+static float dot(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static int unit(const float v[3])
+{
+    return tyni_check_finite(v, 3) && tyni_absf(dot(v, v) - 1.0f) < 2e-3f;
+}
+
+static int32_t component_bytes(tyn_format format)
+{
+    switch (format) {
+    case TYN_RGB_F32:
+    case TYN_DEPTH_F32:
+        return 4;
+    case TYN_RGB565_SRGB:
+    case TYN_RGB16_LINEAR:
+        return 2;
+    default:
+        return 1;
+    }
+}
+
+ptrdiff_t tyni_image_stride(const tyn_image *image)
+{
+    return image->stride ? image->stride : (ptrdiff_t)image->width * tyn_format_bytes(image->format);
+}
+
+void *tyni_image_row(const tyn_image *image, int32_t y)
+{
+    return (uint8_t *)image->pixels + tyni_image_stride(image) * (ptrdiff_t)y;
+}
+
+tyn_status tyni_check_image(const tyn_image *image, uint32_t formats)
+{
+    ptrdiff_t stride;
+    int32_t align;
+    if (!image->pixels)
+        return TYN_E_NULL;
+    if ((uint32_t)image->format > 31u || !(formats & TYNI_FORMAT_BIT((uint32_t)image->format)))
+        return TYN_E_IMAGE;
+    if (image->width < 1 || image->height < 1 || image->width > TYN_MAX_SIZE || image->height > TYN_MAX_SIZE)
+        return TYN_E_IMAGE;
+    align = component_bytes(image->format);
+    if ((uintptr_t)image->pixels % (uintptr_t)align)
+        return TYN_E_ALIGN;
+    stride = tyni_image_stride(image);
+    if (stride % align)
+        return TYN_E_ALIGN;
+    if ((stride < 0 ? -stride : stride) < (ptrdiff_t)image->width * tyn_format_bytes(image->format))
+        return TYN_E_IMAGE;
+    return TYN_OK;
+}
+
+tyn_status tyni_check_camera(const tyn_camera *c)
+{
+    if (!tyni_check_finite(c->position, 3) || !unit(c->right) || !unit(c->up) || !unit(c->forward))
+        return TYN_E_CAMERA;
+    if (tyni_absf(dot(c->right, c->up)) > 2e-3f || tyni_absf(dot(c->up, c->forward)) > 2e-3f ||
+        tyni_absf(dot(c->forward, c->right)) > 2e-3f)
+        return TYN_E_CAMERA;
+    if (!tyni_check_finite(&c->left_edge, 4) || !(c->left_edge < c->right_edge) || !(c->bottom_edge < c->top_edge))
+        return TYN_E_CAMERA;
+    if (!tyni_finite(c->far_depth) || !(c->near_depth > 0.0f) || !(c->near_depth < c->far_depth))
+        return TYN_E_CAMERA;
+    return TYN_OK;
+}
+
+tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t shadow_limit)
+{
+    if (count < 0)
+        return TYN_E_LIMIT;
+    if (count > 0 && !lights)
+        return TYN_E_NULL;
+    for (int32_t i = 0; i < count; i++) {
+        const tyn_light *l = &lights[i];
+        if (l->kind != TYN_LIGHT_DIRECTIONAL && l->kind != TYN_LIGHT_SPOT)
+            return TYN_E_LIGHT;
+        if (!unit(l->direction) || !tyni_check_colour(l->colour))
+            return TYN_E_LIGHT;
+        if (l->kind == TYN_LIGHT_SPOT && (!tyni_check_finite(l->position, 3) || !(l->angle > 0.0f) || !(l->angle < 2.967060f)))
+            return TYN_E_LIGHT;
+        if (!l->shadow.depth)
+            continue;
+        if (l->shadow.size < 1 || l->shadow.size > TYN_MAX_SHADOW || !tyni_check_finite(l->shadow.matrix, 16) ||
+            (uintptr_t)l->shadow.depth % sizeof(float))
+            return TYN_E_LIGHT;
+        if (l->shadow.size > shadow_limit)
+            return TYN_E_LIMIT;
+    }
+    return TYN_OK;
+}
+
+tyn_status tyni_check_media(const tyn_medium *media, int32_t count)
+{
+    if (count < 0 || count > TYN_MAX_MEDIA)
+        return TYN_E_LIMIT;
+    if (count > 0 && !media)
+        return TYN_E_NULL;
+    for (int32_t i = 0; i < count; i++) {
+        const tyn_medium *m = &media[i];
+        if (!tyni_check_colour(m->scatter) || !tyni_check_colour(m->absorb) || (uint32_t)m->phase > (uint32_t)TYN_PHASE_HG)
+            return TYN_E_MEDIUM;
+        if (m->phase == TYN_PHASE_HG && !(m->g > -1.0f && m->g < 1.0f))
+            return TYN_E_MEDIUM;
+    }
+    return TYN_OK;
+}
+
+tyn_status tyni_check_display(const tyn_display *d)
+{
+    if (!tyni_finite(d->exposure) || d->exposure < 0.0f || (uint32_t)d->tone > (uint32_t)TYN_TONE_FILM)
+        return TYN_E_DISPLAY;
+    return TYN_OK;
+}
+
+int32_t tyn_format_bytes(tyn_format format)
+{
+    switch (format) {
+    case TYN_RGB_F32:
+        return 12;
+    case TYN_RGBA8_SRGB:
+    case TYN_BGRA8_SRGB:
+    case TYN_DEPTH_F32:
+        return 4;
+    case TYN_RGB565_SRGB:
+        return 2;
+    case TYN_RGB8_LINEAR:
+        return 3;
+    case TYN_RGB16_LINEAR:
+        return 6;
+    case TYN_MASK8:
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+const char *tyn_status_name(tyn_status status)
+{
+    switch (status) {
+    case TYN_OK:
+        return "TYN_OK";
+    case TYN_E_NULL:
+        return "TYN_E_NULL";
+    case TYN_E_CONFIG:
+        return "TYN_E_CONFIG";
+    case TYN_E_MEMORY:
+        return "TYN_E_MEMORY";
+    case TYN_E_ALIGN:
+        return "TYN_E_ALIGN";
+    case TYN_E_IMAGE:
+        return "TYN_E_IMAGE";
+    case TYN_E_CAMERA:
+        return "TYN_E_CAMERA";
+    case TYN_E_LIGHT:
+        return "TYN_E_LIGHT";
+    case TYN_E_MEDIUM:
+        return "TYN_E_MEDIUM";
+    case TYN_E_MESH:
+        return "TYN_E_MESH";
+    case TYN_E_DISPLAY:
+        return "TYN_E_DISPLAY";
+    case TYN_E_LIMIT:
+        return "TYN_E_LIMIT";
+    case TYN_E_EXECUTOR:
+        return "TYN_E_EXECUTOR";
+    }
+    return "TYN_E_UNKNOWN";
+}
+
+const char *tyn_version(void)
+{
+    return TYN_VERSION;
+}

@@ -1,0 +1,224 @@
+/* medium.c - see medium.h */
+#include "medium.h"
+
+#include <math.h>
+
+#include "base.h"
+#include "num.h"
+
+void tyni_medium_extinction(const tyn_medium *media, int32_t count, float sigma[3])
+{
+    for (int32_t c = 0; c < 3; c++) {
+        sigma[c] = 0.0f;
+        for (int32_t i = 0; i < count; i++)
+            sigma[c] += media[i].scatter[c] + media[i].absorb[c];
+    }
+}
+
+static void choose_channels(tyni_medium *m)
+{
+    m->low = m->high = 0;
+    for (int32_t c = 1; c < 3; c++) {
+        if (m->sigma[c] < m->sigma[m->low])
+            m->low = c;
+        if (m->sigma[c] >= m->sigma[m->high])
+            m->high = c;
+    }
+    m->middle = 3 - m->low - m->high;
+    m->blend = m->sigma[m->high] > m->sigma[m->low]
+                   ? (m->sigma[m->middle] - m->sigma[m->low]) / (m->sigma[m->high] - m->sigma[m->low])
+                   : 0.5f;
+}
+
+void tyni_medium_prepare(tyni_medium *m, const tyn_medium *media, int32_t count)
+{
+    memset(m, 0, sizeof *m);
+    tyni_medium_extinction(media, count, m->sigma);
+    for (int32_t i = 0; i < count; i++) {
+        const tyn_medium *p = &media[i];
+        for (int32_t c = 0; c < 3; c++) {
+            float scatter = p->scatter[c];
+            if (scatter > 0.0f)
+                m->scatters = 1;
+            if (p->phase == TYN_PHASE_ISOTROPIC)
+                m->isotropic[c] += scatter * (0.25f / TYNI_PI);
+            else if (p->phase == TYN_PHASE_RAYLEIGH)
+                m->rayleigh[c] += scatter * (0.1875f / TYNI_PI);
+            else
+                m->hg[m->hg_count].scale[c] = scatter * (0.25f / TYNI_PI) * (1.0f - p->g * p->g);
+        }
+        if (p->phase == TYN_PHASE_HG) {
+            m->hg[m->hg_count++].g = p->g;
+            m->peak = tyni_maxf(m->peak, tyni_absf(p->g));
+        }
+    }
+    choose_channels(m);
+}
+
+void tyni_medium_mix(const tyni_medium *m, float cosine, float mix[3])
+{
+    for (int32_t c = 0; c < 3; c++)
+        mix[c] = m->isotropic[c] + m->rayleigh[c] * (1.0f + cosine * cosine);
+    for (int32_t i = 0; i < m->hg_count; i++) {
+        /* 1 + g^2 - 2 g cos as a sum of two terms >= 0: no cancellation near the peak of a large g */
+        float g = m->hg[i].g, d = (1.0f - g) * (1.0f - g) + 2.0f * g * (1.0f - cosine), f;
+        d = tyni_maxf(d, 1e-12f);
+        f = 1.0f / (d * sqrtf(d));
+        for (int32_t c = 0; c < 3; c++)
+            mix[c] += m->hg[i].scale[c] * f;
+    }
+}
+
+void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t, float density[3])
+{
+    tyni_vec3 to = tyni_vec_sub(lamp->position, tyni_vec_scale(v, t)); /* from the point to the light */
+    float r2 = tyni_maxf(tyni_vec_dot(to, to), 1e-20f), r = sqrtf(r2);
+    /* light travels along -to, towards the camera is -v */
+    tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(to, v) / r, -1.0f, 1.0f), density);
+    for (int32_t c = 0; c < 3; c++)
+        density[c] *= tyni_num_exp(-medium->sigma[c] * (t + r)) / r2;
+}
+
+/* The variable q of medium.h. The reference tr is the end farther from the light, so that wr > 0. */
+typedef struct path {
+    float tr, w0, w1, wr, q0, q1;
+} path;
+
+static float path_w(const path *p, float t)
+{
+    return tyni_maxf(p->w0 + p->w1 * t, 1e-4f * p->wr);
+}
+static float path_t(const path *p, float q)
+{
+    return p->tr + q * p->wr / (1.0f - q * p->w1);
+}
+
+static void path_begin(path *p, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+{
+    float wa, wb;
+    p->w0 = -tyni_vec_dot(lamp->position, lamp->axis);
+    p->w1 = tyni_vec_dot(v, lamp->axis);
+    wa = p->w0 + p->w1 * t0;
+    wb = p->w0 + p->w1 * t1;
+    p->tr = wa > wb ? t0 : t1;
+    p->wr = tyni_maxf(tyni_maxf(wa, wb), 1e-20f);
+    p->q0 = (t0 - p->tr) / path_w(p, t0);
+    p->q1 = (t1 - p->tr) / path_w(p, t1);
+}
+
+/* The integrand per dq. */
+static void path_value(const path *p, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float q, float value[3])
+{
+    float t = path_t(p, q), w = path_w(p, t), scale = w * w / p->wr;
+    tyni_integral_density(medium, lamp, v, t, value);
+    for (int32_t c = 0; c < 3; c++)
+        value[c] *= scale;
+}
+
+/* Simpson intervals: more where the integrand bends, by depth and by the phase function's peak. */
+static int32_t intervals(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+{
+    float sigma = medium->sigma[medium->high], bend = 4.0f;
+    float a = t0 + tyni_vec_length(tyni_vec_sub(lamp->position, tyni_vec_scale(v, t0)));
+    float b = t1 + tyni_vec_length(tyni_vec_sub(lamp->position, tyni_vec_scale(v, t1)));
+    bend += 2.0f * sigma * (b - a);
+    bend += 4.0f * medium->peak / (1.0f - medium->peak);
+    return tyni_clampi((int32_t)tyni_minf(bend, 64.0f), 4, TYNI_MEDIUM_KNOTS - 1);
+}
+
+static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v)
+{
+    path p;
+    float last[3], half[3], next[3];
+    int32_t n = intervals(medium, lamp, v, it->t0, it->t1);
+    path_begin(&p, lamp, v, it->t0, it->t1);
+    it->tr = p.tr;
+    it->w0 = p.w0;
+    it->w1 = p.w1;
+    it->wr = p.wr;
+    it->q0 = p.q0;
+    it->step = (p.q1 - p.q0) / (float)n;
+    it->knots = n + 1;
+    path_value(&p, medium, lamp, v, p.q0, last);
+    for (int32_t i = 0; i < it->count; i++) {
+        it->sum[i][0] = 0.0f;
+        it->value[i][0] = last[it->channels[i]] * it->step;
+    }
+    for (int32_t k = 1; k <= n; k++) {
+        path_value(&p, medium, lamp, v, p.q0 + ((float)k - 0.5f) * it->step, half);
+        path_value(&p, medium, lamp, v, p.q0 + (float)k * it->step, next);
+        for (int32_t i = 0; i < it->count; i++) {
+            int32_t c = it->channels[i];
+            it->sum[i][k] = it->sum[i][k - 1] + it->step * (1.0f / 6.0f) * (last[c] + 4.0f * half[c] + next[c]);
+            it->value[i][k] = next[c] * it->step;
+        }
+        memcpy(last, next, sizeof last);
+    }
+}
+
+void tyni_integral_begin(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1,
+                         const int32_t *channels, int32_t count)
+{
+    it->count = count;
+    it->t0 = t0;
+    it->t1 = t1;
+    it->spot = lamp->kind == TYN_LIGHT_SPOT;
+    for (int32_t i = 0; i < count; i++) {
+        it->channels[i] = channels[i];
+        it->sigma[i] = medium->sigma[channels[i]];
+    }
+    if (it->spot && t1 > t0)
+        tabulate(it, medium, lamp, v);
+}
+
+/* Cubic Hermite between knots; s in knots. Slopes are the integrand, so the sum rises. */
+static void hermite(const tyni_integral *it, float s, float *out)
+{
+    int32_t k = tyni_clampi((int32_t)s, 0, it->knots - 2);
+    float x = tyni_clampf(s - (float)k, 0.0f, 1.0f), y = 1.0f - x;
+    float h1 = x * x * (3.0f - 2.0f * x), d0 = x * y * y, d1 = -x * x * y;
+    for (int32_t i = 0; i < it->count; i++) {
+        const float *sum = it->sum[i] + k, *value = it->value[i] + k;
+        out[i] = sum[0] + (sum[1] - sum[0]) * h1 + value[0] * d0 + value[1] * d1;
+    }
+}
+
+void tyni_integral_at(const tyni_integral *it, float t, float *out)
+{
+    float w;
+    t = tyni_clampf(t, it->t0, it->t1);
+    if (!it->spot) {
+        for (int32_t i = 0; i < it->count; i++) {
+            float d = it->sigma[i];
+            out[i] = t * tyni_num_fog(d * t);
+            if (it->t0 > 0.0f)
+                out[i] -= it->t0 * tyni_num_fog(d * it->t0);
+        }
+        return;
+    }
+    w = tyni_maxf(it->w0 + it->w1 * t, 1e-4f * it->wr);
+    hermite(it, tyni_clampf(((t - it->tr) / w - it->q0) / it->step, 0.0f, (float)(it->knots - 1)), out);
+}
+
+void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3])
+{
+    /* Gauss and Legendre, four points on 0 .. 1 */
+    static const float at[4] = {0.0694318442f, 0.330009478f, 0.669990522f, 0.930568156f};
+    static const float weight[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
+    float value[3];
+    path p;
+    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+        for (int32_t c = 0; c < 3; c++)
+            norm[c] = t1 * tyni_num_fog(medium->sigma[c] * t1);
+        return;
+    }
+    norm[0] = norm[1] = norm[2] = 0.0f;
+    if (!(t1 > t0))
+        return;
+    path_begin(&p, lamp, v, t0, t1);
+    for (int32_t i = 0; i < 4; i++) {
+        path_value(&p, medium, lamp, v, p.q0 + (p.q1 - p.q0) * at[i], value);
+        for (int32_t c = 0; c < 3; c++)
+            norm[c] += (p.q1 - p.q0) * weight[i] * value[c];
+    }
+}

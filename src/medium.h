@@ -1,0 +1,71 @@
+/* medium.h - extinction, phase functions, and the light that a ray gathers in closed form (method.md section 2). */
+#ifndef TYNI_MEDIUM_H
+#define TYNI_MEDIUM_H
+
+#include "base.h"
+#include "vec.h"
+#include "view.h"
+
+/* The sum of scatter and absorb of all components, 1/m. */
+void tyni_medium_extinction(const tyn_medium *media, int32_t count, float sigma[3]);
+
+/* The components, ready to evaluate. */
+typedef struct tyni_medium {
+    float sigma[3];
+    float isotropic[3]; /* scatter / (4 pi) of all isotropic ones */
+    float rayleigh[3];  /* 3 / (16 pi) scatter */
+    int32_t hg_count;
+    struct {
+        float scale[3]; /* (1 - g^2) / (4 pi) scatter */
+        float g;
+    } hg[TYN_MAX_MEDIA];
+    float peak;   /* largest |g| */
+    int scatters; /* any scatter > 0 */
+    /* Two channels carry the visibility of all three: those of the least and the largest extinction. The third's lies at
+     * `blend` between them. */
+    int32_t low, high, middle;
+    float blend;
+} tyni_medium;
+
+void tyni_medium_prepare(tyni_medium *medium, const tyn_medium *media, int32_t count);
+
+/* mix[c] = sum over components of scatter[c] * p(cosine): what the medium scatters per metre and steradian. */
+void tyni_medium_mix(const tyni_medium *medium, float cosine, float mix[3]);
+
+#define TYNI_MEDIUM_KNOTS 33
+
+/* The light gathered from t0 to t along one ray, if all of it were lit, in up to three channels:
+ *   directional:  integral of e^(-sigma t); the phase function is constant and comes in at the pixel
+ *   spot:         integral of e^(-sigma (t + r)) mix(cos) / r^2; r is the distance to the light
+ * The first is closed. The second is smooth in q = (t - tr) / w(t), w the depth seen from the light: dt / r^2 = dq times a
+ * bounded factor, with no singularity near the light. It is tabulated there once per ray by Simpson's rule and read
+ * by cubic Hermite interpolation, for any phase function. */
+typedef struct tyni_integral {
+    int32_t channels[3];
+    int32_t count; /* of channels */
+    float sigma[3];
+    float t0, t1; /* t1 <= t0: nothing is gathered */
+    int spot;
+    float tr, w0, w1, wr; /* w(t) = w0 + w1 t; wr = w(tr) */
+    float q0, step;       /* knots */
+    int32_t knots;
+    float sum[3][TYNI_MEDIUM_KNOTS];   /* integral up to the knot */
+    float value[3][TYNI_MEDIUM_KNOTS]; /* the integrand there, times step */
+} tyni_integral;
+
+/* t0 .. t1 must lie inside the cone (tyni_view_clip_cone). */
+void tyni_integral_begin(tyni_integral *integral, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0,
+                         float t1, const int32_t *channels, int32_t count);
+
+/* out[n]: from t0 to t. Never falls with t beyond rounding. */
+void tyni_integral_at(const tyni_integral *integral, float t, float *out);
+
+/* A cheap stand-in for the whole integral that is exact for a directional light and smooth over the screen for a spot: radiance
+ * is divided by it where it is sampled and multiplied by it at each pixel, so that only the smooth ratio is interpolated. All
+ * three channels. */
+void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3]);
+
+/* The spot's integrand per dt in all channels. */
+void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t, float density[3]);
+
+#endif

@@ -1,0 +1,140 @@
+/* view.c - see view.h */
+#include "view.h"
+
+#include <math.h>
+
+#include "base.h"
+#include "num.h"
+
+void tyni_view_camera(tyni_view *view, const tyn_camera *camera, int32_t width, int32_t height)
+{
+    view->position = tyni_vec_load(camera->position);
+    view->right = tyni_vec_load(camera->right);
+    view->up = tyni_vec_load(camera->up);
+    view->forward = tyni_vec_load(camera->forward);
+    view->left = camera->left_edge;
+    view->top = camera->top_edge;
+    view->scale_x = (float)width / (camera->right_edge - camera->left_edge);
+    view->scale_y = (float)height / (camera->top_edge - camera->bottom_edge);
+    view->near_depth = camera->near_depth;
+    view->far_depth = camera->far_depth;
+    view->width = width;
+    view->height = height;
+    view->dx = tyni_vec_scale(view->right, 1.0f / view->scale_x);
+    view->dy = tyni_vec_scale(view->up, -1.0f / view->scale_y);
+    view->origin = tyni_vec_mad(tyni_vec_mad(view->forward, view->left, view->right), view->top, view->up);
+}
+
+/* IVB section 6.1: the light projected homogeneously. A point behind the camera has w < 0; both signs of (x, y, w) are one line
+ * bundle, so w is made positive and the direction remembered. */
+static void epipole(tyni_lamp *lamp, const tyni_view *view)
+{
+    float a = tyni_vec_dot(lamp->to_light, view->right);
+    float b = tyni_vec_dot(lamp->to_light, view->up);
+    float w = tyni_vec_dot(lamp->to_light, view->forward);
+    lamp->ex = (a - view->left * w) * view->scale_x;
+    lamp->ey = (view->top * w - b) * view->scale_y;
+    lamp->ew = w;
+    lamp->behind = w < 0.0f;
+    if (lamp->behind) {
+        lamp->ex = -lamp->ex;
+        lamp->ey = -lamp->ey;
+        lamp->ew = -w;
+    }
+    /* So far off that a float could not tell its lines from parallel ones: parallel they are. */
+    if (lamp->ew * 1e6f * (float)(view->width + view->height) < tyni_absf(lamp->ex) + tyni_absf(lamp->ey))
+        lamp->ew = 0.0f;
+}
+
+static tyni_form form(const float row[4], const tyni_view *view, float scale)
+{
+    tyni_form f;
+    f.v = tyni_vec_scale(tyni_vec_load(row), scale);
+    f.c = (row[3] + tyni_vec_dot(tyni_vec_load(row), view->position)) * scale;
+    return f;
+}
+
+static void shadow_map(tyni_lamp *lamp, const tyn_shadow *shadow, const tyni_view *view)
+{
+    float texels = (float)shadow->size, size = 0.0f, scale;
+    lamp->depth = NULL;
+    lamp->size = 0;
+    if (!shadow->depth)
+        return;
+    /* A common factor of the matrix is free; make w's row of the order of 1. */
+    for (int32_t i = 12; i < 16; i++)
+        size = tyni_maxf(size, tyni_absf(shadow->matrix[i]));
+    if (!(size > 0.0f))
+        return;
+    scale = 1.0f / size;
+    lamp->u = form(shadow->matrix, view, texels * scale);
+    lamp->v = form(shadow->matrix + 4, view, texels * scale);
+    lamp->z = form(shadow->matrix + 8, view, scale);
+    lamp->w = form(shadow->matrix + 12, view, scale);
+    lamp->depth = shadow->depth;
+    lamp->size = shadow->size;
+}
+
+void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view)
+{
+    float sine;
+    memset(lamp, 0, sizeof *lamp);
+    lamp->kind = light->kind;
+    for (int32_t c = 0; c < 3; c++)
+        lamp->colour[c] = light->colour[c];
+    lamp->axis = tyni_vec_normalise(tyni_vec_load(light->direction));
+    if (light->kind == TYN_LIGHT_DIRECTIONAL) {
+        lamp->to_light = tyni_vec_scale(lamp->axis, -1.0f);
+    } else {
+        lamp->position = tyni_vec_sub(tyni_vec_load(light->position), view->position);
+        lamp->distance = tyni_vec_length(lamp->position);
+        lamp->to_light = tyni_vec_normalise(lamp->position);
+        tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cos_half);
+        lamp->at_camera = lamp->distance <= 1e-4f * view->near_depth;
+    }
+    epipole(lamp, view);
+    shadow_map(lamp, &light->shadow, view);
+}
+
+/* With T = t - (closest approach) the point is T v - h, h at right angles to v, and the double cone
+ *     (T v.a - h.a)^2 >= k^2 (T^2 + h^2)
+ * is a quadratic in T without the cancellation of the usual form. */
+int tyni_view_clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
+{
+    float tc, va, ha, k2, a, c, disc, root, b, r1, r2, swap;
+    tyni_vec3 h;
+    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
+        return *t0 < *t1;
+    tc = tyni_vec_dot(v, lamp->position);
+    h = tyni_vec_mad(lamp->position, -tc, v);
+    va = tyni_vec_dot(v, lamp->axis);
+    ha = tyni_vec_dot(h, lamp->axis);
+    k2 = lamp->cos_half * lamp->cos_half;
+    a = va * va - k2;
+    c = ha * ha - k2 * tyni_vec_dot(h, h);
+    disc = ha * ha + a * tyni_vec_dot(h, h);
+    if (disc <= 0.0f && a <= 0.0f)
+        return 0;
+    root = lamp->cos_half * sqrtf(disc > 0.0f ? disc : 0.0f);
+    b = va * ha; /* a T^2 - 2 b T + c >= 0 */
+    r2 = b >= 0.0f ? b + root : b - root;
+    r1 = r2 != 0.0f ? c / r2 : 0.0f;
+    /* a near 0: one root is far away; any large number of the right sign serves */
+    r2 = tyni_absf(a) > 1e-9f ? r2 / a : (r2 >= 0.0f) == (a >= 0.0f) ? 1e30f : -1e30f;
+    if (r1 > r2) {
+        swap = r1;
+        r1 = r2;
+        r2 = swap;
+    }
+    if (a < 0.0f) { /* between the roots, on one nappe: the front one? */
+        if (0.5f * (tyni_maxf(r1, -1e18f) + tyni_minf(r2, 1e18f)) * va < ha)
+            return 0;
+        *t0 = tyni_maxf(*t0, tc + r1);
+        *t1 = tyni_minf(*t1, tc + r2);
+    } else if (va > 0.0f) {
+        *t0 = tyni_maxf(*t0, tc + r2);
+    } else {
+        *t1 = tyni_minf(*t1, tc + r1);
+    }
+    return *t0 < *t1;
+}

@@ -1,0 +1,68 @@
+/* view.h - the camera, the light and its shadow map as seen from the camera, and the epipole.
+ *
+ * Everything inside is relative to the camera's position: large world coordinates cost precision only once, here. */
+#ifndef TYNI_VIEW_H
+#define TYNI_VIEW_H
+
+#include "vec.h"
+
+#include "base.h"
+
+/* Direction of the pixel-plane point (px, py), of depth 1: origin + px * dx + py * dy. Pixel centres are at 0.5. */
+typedef struct tyni_view {
+    tyni_vec3 position;
+    tyni_vec3 right, up, forward;
+    tyni_vec3 origin, dx, dy;
+    float left, top, scale_x, scale_y; /* pixel = (tangent - left) * scale_x, (top - tangent) * scale_y */
+    float near_depth, far_depth;
+    int32_t width, height;
+} tyni_view;
+
+void tyni_view_camera(tyni_view *view, const tyn_camera *camera, int32_t width, int32_t height);
+
+static inline tyni_vec3 tyni_view_direction(const tyni_view *view, float px, float py)
+{
+    return tyni_vec_mad(tyni_vec_mad(view->origin, px, view->dx), py, view->dy);
+}
+
+/* A depth buffer's value as the length of its ray in depths: 0 .. far; NaN and infinity are far. */
+static inline float tyni_view_depth(const tyni_view *view, float depth)
+{
+    if (!(depth < view->far_depth))
+        return view->far_depth;
+    return depth > 0.0f ? depth : 0.0f;
+}
+
+/* A linear form of a camera-relative point: v . p + c. */
+typedef struct tyni_form {
+    tyni_vec3 v;
+    float c;
+} tyni_form;
+
+/* A light as the camera sees it. */
+typedef struct tyni_lamp {
+    tyn_light_kind kind;
+    float colour[3];
+    tyni_vec3 to_light; /* unit vector from the camera */
+    float distance;     /* spot: to the light */
+    tyni_vec3 position; /* spot: relative to the camera */
+    tyni_vec3 axis;     /* the way the light travels, of length 1 */
+    float cos_half;     /* spot: of half the cone's angle */
+    int at_camera;      /* the light is where the camera is: there is no epipole */
+    /* Epipole in homogeneous pixel coordinates with w >= 0. `behind`: it is the antipode's image, and slopes grow along a line
+     * away from it instead of falling. */
+    float ex, ey, ew;
+    int behind;
+    /* The shadow map: u and v in texels. depth NULL: no map, or one with a matrix that is singular as seen from here. */
+    const float *depth;
+    int32_t size;
+    tyni_form u, v, z, w;
+} tyni_lamp;
+
+void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view);
+
+/* The part of the ray t * v (|v| = 1, t0 <= t <= t1) inside a spot's cone; 0 if there is none. A directional light: all of it.
+ */
+int tyni_view_clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1);
+
+#endif
