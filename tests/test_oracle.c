@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "scene.h"
+#include "model.h"
 #include "test.h"
 
 #define PI 3.14159265358979323846
@@ -19,26 +19,26 @@ static void test_closed_sun(void)
     TEST("oracle: a sun without occluders is (1 - exp(-sigma s)) / sigma");
     for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++) {
         double v[3], out[3], scatter = i == 0 ? 0.0 : 0.75 * sigmas[i];
-        oracle_scene *scene = scene_new(8, 8);
-        scene_medium(scene, scatter, sigmas[i] - scatter, 1.0, TYN_PHASE_ISOTROPIC, 0);
-        scene_sun(scene, 0.3, -1, 0.2, 7);
+        oracle_scene *scene = model_new(8, 8);
+        model_medium(scene, scatter, sigmas[i] - scatter, 1.0, TYN_PHASE_ISOTROPIC, 0);
+        model_sun(scene, 0.3, -1, 0.2, 7);
         CHECK(oracle_prepare(scene));
         oracle_ray(scene, 1.5, 6.5, v);
         oracle_scatter(scene, v, 13.0, out);
         CHECK_NEAR(out[0], isotropic_inscatter(sigmas[i], scatter, 7, 13), 1e-12 * out[0]);
         CHECK_NEAR(out[2], 0.7 * out[0], 1e-12 * out[0]);
-        scene_free(scene);
+        model_free(scene);
     }
 }
 
 static void test_closed_spot(void)
 {
     double v[3], out[3], to[3], foot, h, from, end, angle = 0;
-    oracle_scene *scene = scene_new(64, 64);
+    oracle_scene *scene = model_new(64, 64);
     TEST("oracle: a lamp in air that only scatters is (phi_b - phi_a) / h");
     /* Scattering without extinction does not exist, so it is taken to almost nothing. */
-    scene_medium(scene, 1e-9, 0, 1.0, TYN_PHASE_ISOTROPIC, 0);
-    scene_spot(scene, 2, 5, -10, 0, 0, -12, 160, 30);
+    model_medium(scene, 1e-9, 0, 1.0, TYN_PHASE_ISOTROPIC, 0);
+    model_spot(scene, 2, 5, -10, 0, 0, -12, 160, 30);
     CHECK(oracle_prepare(scene));
     for (int i = 0; i < 64; i += 9) {
         oracle_ray(scene, i + 0.5, 40.5, v);
@@ -61,37 +61,37 @@ static void test_closed_spot(void)
         }
         CHECK_NEAR(out[0], 30 * 1e-9 / (4 * PI) * angle / h, 1e-6 * out[0]);
     }
-    scene_free(scene);
-    scene = scene_new(64, 64);
+    model_free(scene);
+    scene = model_new(64, 64);
     /* Rayleigh, whole ray from minus to plus infinity: the integral over pi / h of (1 + sin2) is 3 pi / 2. */
-    scene_medium(scene, 1e-12, 0, 1.0, TYN_PHASE_RAYLEIGH, 0);
-    scene_spot(scene, 1e6, 1, 0, 1e6, 0, 0, 60, 1);
+    model_medium(scene, 1e-12, 0, 1.0, TYN_PHASE_RAYLEIGH, 0);
+    model_spot(scene, 1e6, 1, 0, 1e6, 0, 0, 60, 1);
     scene->light[0].kind = ORACLE_POINT;
-    scene_camera(scene, 0, 0, 0, 1, 0, 0, 60, 0.1, 1e7);
+    model_camera(scene, 0, 0, 0, 1, 0, 0, 60, 0.1, 1e7);
     CHECK(oracle_prepare(scene));
     v[0] = 1, v[1] = v[2] = 0;
     oracle_scatter(scene, v, 2e6, out);
     from = 1e-12 * 3 / (16 * PI) * 1.5 * PI;
     end = out[0];
     CHECK_NEAR(end / from, 1.0, 1e-5);
-    scene_free(scene);
+    model_free(scene);
 }
 
 /* A court of posts, a lintel and a slanted board, with a sun and a lamp in hazy air. */
 static oracle_scene *court(void)
 {
     const double a[3] = {-3, 0.5, -9}, b[3] = {2, 3.5, -8}, c[3] = {-3, 2.5, -5};
-    oracle_scene *scene = scene_new(64, 48);
-    scene_camera(scene, 0.2, 1.5, 4, 0, 1.8, -6, 60, 0.1, 40);
-    scene_box(scene, -40, -1, -40, 40, 0, 40, 0.5);
+    oracle_scene *scene = model_new(64, 48);
+    model_camera(scene, 0.2, 1.5, 4, 0, 1.8, -6, 60, 0.1, 40);
+    model_box(scene, -40, -1, -40, 40, 0, 40, 0.5);
     for (int i = -3; i <= 3; i++)
-        scene_box(scene, i * 1.1, 0, -5, i * 1.1 + 0.3, 3, -4.6, 0.4);
-    scene_box(scene, -4, 3, -5.2, 4, 3.4, -4.4, 0.6);
-    scene_quad(scene, a, b, c, 0.5);
-    scene_medium(scene, 0.04, 0.002, 1.3, TYN_PHASE_HG, 0.5);
-    scene_medium(scene, 0.02, 0, 2.0, TYN_PHASE_RAYLEIGH, 0);
-    scene_sun(scene, 0.25, -0.6, 1, 8);
-    scene_spot(scene, -3, 5, -7, 1, 0, -2, 70, 90);
+        model_box(scene, i * 1.1, 0, -5, i * 1.1 + 0.3, 3, -4.6, 0.4);
+    model_box(scene, -4, 3, -5.2, 4, 3.4, -4.4, 0.6);
+    model_quad(scene, a, b, c, 0.5);
+    model_medium(scene, 0.04, 0.002, 1.3, TYN_PHASE_HG, 0.5);
+    model_medium(scene, 0.02, 0, 2.0, TYN_PHASE_RAYLEIGH, 0);
+    model_sun(scene, 0.25, -0.6, 1, 8);
+    model_spot(scene, -3, 5, -7, 1, 0, -2, 70, 90);
     return scene;
 }
 
@@ -135,7 +135,7 @@ static void test_brute(void)
         }
     }
     CHECK_NEAR(gap / sum, 0.0, 3e-4); /* a march of 20000 steps is off by half a step at each transition */
-    scene_free(scene);
+    model_free(scene);
 }
 
 static void test_phase(void)
@@ -165,16 +165,16 @@ static void test_reference(const char *name, int from)
     snprintf(path, sizeof path, "reference/%s.scene", name);
     if ((full = test_shared(path)) == NULL)
         return;
-    scene = scene_read(full);
+    scene = model_read(full);
     snprintf(path, sizeof path, "reference/%s.depth.pfm", name);
     if ((full = test_shared(path)) != NULL)
-        depth = scene_read_pfm(full, &width, &height, &channels);
+        depth = model_read_pfm(full, &width, &height, &channels);
     snprintf(path, sizeof path, "reference/%s.radiance.pfm", name);
     if ((full = test_shared(path)) != NULL)
-        radiance = scene_read_pfm(full, &width, &height, &channels);
+        radiance = model_read_pfm(full, &width, &height, &channels);
     snprintf(path, sizeof path, "reference/%s.scatter.pfm", name);
     if ((full = test_shared(path)) != NULL)
-        scatter = scene_read_pfm(full, &width, &height, &channels);
+        scatter = model_read_pfm(full, &width, &height, &channels);
     CHECK(scene && scatter && radiance && depth && oracle_prepare(scene));
     if (scene && scene->scratch && scatter && radiance && depth) {
         CHECK(width == scene->width && height == scene->height && channels == 3);
@@ -201,7 +201,7 @@ static void test_reference(const char *name, int from)
     free(scatter);
     free(radiance);
     free(depth);
-    scene_free(scene);
+    model_free(scene);
 }
 
 void test_oracle(void)

@@ -1,5 +1,5 @@
-/* scene.c - see scene.h */
-#include "scene.h"
+/* model.c - see model.h */
+#include "model.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,18 +23,18 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-oracle_scene *scene_new(int width, int height)
+oracle_scene *model_new(int width, int height)
 {
     oracle_scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return NULL;
     scene->width = width;
     scene->height = height;
-    scene_camera(scene, 0, 0, 0, 0, 0, -1, 60, 0.1, 100);
+    model_camera(scene, 0, 0, 0, 0, 0, -1, 60, 0.1, 100);
     return scene;
 }
 
-void scene_free(oracle_scene *scene)
+void model_free(oracle_scene *scene)
 {
     if (scene)
         oracle_release(scene);
@@ -60,7 +60,7 @@ static void look(oracle_scene *scene, const double position[3], const double tar
     c->far_depth = far_depth;
 }
 
-void scene_camera(oracle_scene *scene, double px, double py, double pz, double tx, double ty, double tz, double fov_degrees,
+void model_camera(oracle_scene *scene, double px, double py, double pz, double tx, double ty, double tz, double fov_degrees,
                   double near_depth, double far_depth)
 {
     const double position[3] = {px, py, pz}, target[3] = {tx, ty, tz}, up[3] = {0, 1, 0};
@@ -85,7 +85,7 @@ static void parallelogram(oracle_scene *scene, const double a[3], const double b
     }
 }
 
-void scene_quad(oracle_scene *scene, const double a[3], const double b[3], const double c[3], double albedo)
+void model_quad(oracle_scene *scene, const double a[3], const double b[3], const double c[3], double albedo)
 {
     const double grey[3] = {albedo, albedo, albedo};
     parallelogram(scene, a, b, c, grey);
@@ -107,13 +107,13 @@ static void box(oracle_scene *scene, const double low[3], const double high[3], 
     }
 }
 
-void scene_box(oracle_scene *scene, double x0, double y0, double z0, double x1, double y1, double z1, double albedo)
+void model_box(oracle_scene *scene, double x0, double y0, double z0, double x1, double y1, double z1, double albedo)
 {
     const double low[3] = {x0, y0, z0}, high[3] = {x1, y1, z1}, grey[3] = {albedo, albedo, albedo};
     box(scene, low, high, grey);
 }
 
-void scene_medium(oracle_scene *scene, double scatter, double absorb, double blue, tyn_phase phase, double g)
+void model_medium(oracle_scene *scene, double scatter, double absorb, double blue, tyn_phase phase, double g)
 {
     oracle_medium *m = &scene->medium[scene->media++];
     for (int k = 0; k < 3; k++) {
@@ -138,7 +138,7 @@ static void set3(double v[3], double x, double y, double z)
     v[2] = z;
 }
 
-void scene_sun(oracle_scene *scene, double dx, double dy, double dz, double irradiance)
+void model_sun(oracle_scene *scene, double dx, double dy, double dz, double irradiance)
 {
     oracle_light *light = new_light(scene, ORACLE_DIRECTIONAL);
     set3(light->direction, dx, dy, dz);
@@ -146,7 +146,7 @@ void scene_sun(oracle_scene *scene, double dx, double dy, double dz, double irra
     set3(light->colour, irradiance, 0.9 * irradiance, 0.7 * irradiance);
 }
 
-void scene_spot(oracle_scene *scene, double px, double py, double pz, double tx, double ty, double tz, double angle_degrees,
+void model_spot(oracle_scene *scene, double px, double py, double pz, double tx, double ty, double tz, double angle_degrees,
                 double intensity)
 {
     oracle_light *light = new_light(scene, ORACLE_SPOT);
@@ -249,16 +249,16 @@ static int read_line(oracle_scene *scene, const char *line)
     return 0;
 }
 
-oracle_scene *scene_read(const char *path)
+oracle_scene *model_read(const char *path)
 {
     char line[512];
     FILE *file = fopen(path, "r");
-    oracle_scene *scene = scene_new(1, 1);
+    oracle_scene *scene = model_new(1, 1);
     while (file && scene && fgets(line, sizeof line, file)) {
         line[strcspn(line, "\r\n")] = '\0';
         if (!read_line(scene, line)) {
             fprintf(stderr, "%s: %s: not for these tests\n", path, line);
-            scene_free(scene);
+            model_free(scene);
             scene = NULL;
         }
     }
@@ -267,7 +267,7 @@ oracle_scene *scene_read(const char *path)
     return scene;
 }
 
-float *scene_read_pfm(const char *path, int *width, int *height, int *channels)
+float *model_read_pfm(const char *path, int *width, int *height, int *channels)
 {
     char kind;
     float scale, *pixels = NULL;
