@@ -1,0 +1,28 @@
+/* pnm.h - PPM (P3, P6) and PGM (P2, P5) as textures. */
+#ifndef TOOL_PNM_H
+#define TOOL_PNM_H
+
+#include "error.h"
+#include "scene.h"
+
+/* A texture: TYN_RGB8_LINEAR for a maxval of 255, else TYN_RGB16_LINEAR with the values stretched to 65535. NULL: error set. */
+tyn_image *pnm_load_colour(scene *s, const char *path, tool_error *error);
+
+/* A mask: TYN_MASK8 with 0 where a value is below half of maxval, else 255. NULL: error set. */
+tyn_image *pnm_load_mask(scene *s, const char *path, tool_error *error);
+
+/* The textures of a scene by name, so that each file is read once. Zero bytes are an empty cache. */
+typedef struct texture_cache {
+    struct texture_entry {
+        char *path;
+        int mask;
+        tyn_image *image;
+    } * entries;
+    int32_t count, capacity;
+} texture_cache;
+
+/* The image of a file, read at its first use. NULL: error set. */
+tyn_image *texture_load(texture_cache *cache, scene *s, const char *path, int mask, tool_error *error);
+void texture_cache_free(texture_cache *cache);
+
+#endif
