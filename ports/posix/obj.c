@@ -63,9 +63,9 @@ static void *reserve(void *block, size_t *capacity, size_t need, size_t item, in
     return more;
 }
 
-static uint32_t hash_of(uint32_t part, uint32_t v, uint32_t vt)
+static uint32_t hash_of(uint32_t number, uint32_t v, uint32_t vt)
 {
-    uint32_t h = (v * 0x9e3779b1u) ^ (vt * 0x85ebca77u) ^ (part * 0xc2b2ae3du);
+    uint32_t h = (v * 0x9e3779b1u) ^ (vt * 0x85ebca77u) ^ (number * 0xc2b2ae3du);
     h ^= h >> 15;
     h *= 0x2c1b3c6du;
     return h ^ h >> 13;
