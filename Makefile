@@ -45,14 +45,16 @@ golden: $(B)/tests
 
 # ---- build ---------------------------------------------------------------------------------------------------------------
 
+# qcs, not rcs: two rooms may have files of the same name.
+
 $(B)/libtyndall.a: $(call OBJ,$(LIB_SRC)) $(B)/sources
 	rm -f $@
-	$(AR) rcs $@ $(filter %.o,$^)
+	$(AR) qcs $@ $(filter %.o,$^)
 
 # The port as an archive: the tests take from it what they use, but not its main.
 $(B)/libport.a: $(call OBJ,$(PORT_SRC)) $(B)/sources
 	rm -f $@
-	$(AR) rcs $@ $(filter %.o,$^)
+	$(AR) qcs $@ $(filter %.o,$^)
 
 $(B)/tyndall: $(call OBJ,$(PORT_SRC)) $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
