@@ -1,0 +1,227 @@
+/* fill.c - stage 2: which pixel centres lie in a piece, and which of them pass the depth test.
+ *
+ * An edge crosses a row's centre line at a rational number. The first pixel centre at or right of it is calculated exactly, in
+ * integers, from the two end points alone, upper one first; it is where the triangle on the edge's right begins and where the
+ * one on its left ends. So triangles that share an edge leave no gap and hit no pixel twice, and left edges belong to a
+ * triangle while right ones don't. For rows it is the same: a row at the upper corner's height belongs to it, one at the lower
+ * corner's does not. That is the top-left rule. */
+#include "raster/raster.h"
+
+/* Where an edge's row begins: x + (rest > 0 done by the offset), stepped like a division with remainder, row by row. */
+typedef struct edge {
+    int32_t x, step;
+    int64_t rest, step_rest, whole; /* 0 <= rest < whole; also of a step */
+} edge;
+
+typedef struct brush {
+    const tyni_raster_pass *pass;
+    const tyni_raster_piece *piece;
+    const tyni_raster_cutout *cutout; /* NULL: solid */
+    int64_t pixels;
+    int32_t probe; /* only asks whether anything is covered */
+} brush;
+
+static int32_t first_row(int32_t y)
+{
+    return ((y + TYNI_RASTER_SUB / 2 - 1 + (1 << 26)) >> 8) - (1 << 18);
+}
+
+/* Division that rounds down, for n > 0. */
+static int64_t floor_div(int64_t a, int64_t n)
+{
+    const int64_t q = a / n;
+    return q - (a - q * n < 0);
+}
+
+static int32_t floor_div_small(int32_t a, int32_t n)
+{
+    const int32_t q = a / n;
+    return q - (a - q * n < 0);
+}
+
+/* The edge from a down to b (a.y < b.y) at row y: x = ceil((a.x - 128 + (256 y + 128 - a.y) dx / dy) / 256). `many`: it will be
+ * stepped. Small edges do with 32 bits: |dx|, dy < 2^15 keep the sum below 2^30 + 2^23 + 2^23. */
+static void start(edge *e, const tyni_raster_point *a, const tyni_raster_point *b, int32_t y, int many)
+{
+    const int32_t dx = b->x - a->x, dy = b->y - a->y, below = TYNI_RASTER_SUB * y + TYNI_RASTER_SUB / 2 - a->y;
+    const int32_t column = first_row(a->x), from = a->x - TYNI_RASTER_SUB / 2 - column * TYNI_RASTER_SUB; /* -255 .. 0 */
+    e->whole = (int64_t)dy * TYNI_RASTER_SUB;
+    e->step = 0;
+    e->step_rest = 0;
+    if (dx < 32768 && dx > -32768 && dy < 32768) {
+        const int32_t whole = dy * TYNI_RASTER_SUB, sum = from * dy + below * dx + whole - 1;
+        const int32_t q = floor_div_small(sum, whole);
+        e->x = column + q;
+        e->rest = sum - q * whole;
+    } else {
+        const int64_t sum = (int64_t)from * dy + (int64_t)below * dx + e->whole - 1;
+        const int64_t q = floor_div(sum, e->whole);
+        e->x = (int32_t)(column + q);
+        e->rest = sum - q * e->whole;
+    }
+    if (many) {
+        e->step = floor_div_small(dx, dy);
+        e->step_rest = ((int64_t)dx - (int64_t)e->step * dy) * TYNI_RASTER_SUB;
+    }
+}
+
+static void advance(edge *e)
+{
+    e->x += e->step;
+    e->rest += e->step_rest;
+    if (e->rest >= e->whole) {
+        e->rest -= e->whole;
+        e->x++;
+    }
+}
+
+static void span_seen(brush *b, int32_t y, int32_t from, int32_t to)
+{
+    const tyni_raster_pass *pass = b->pass;
+    const tyni_raster_piece *piece = b->piece;
+    float *depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
+    uint8_t *colour = pass->kind == TYNI_RASTER_SEEN ? pass->colour + y * pass->colour_stride : NULL;
+    const float row = piece->plane.dy * (float)(y - piece->plane.y0) + piece->plane.value;
+    const uint32_t seen[2] = {piece->mesh, piece->triangle};
+    for (int32_t x = from; x < to; x++) {
+        const float value = piece->plane.dx * (float)(x - piece->plane.x0) + row;
+        const float z = 1.0f / tyni_clampf(value, piece->low, piece->high);
+        if (z < depth[x] && z >= pass->nearest && (!b->cutout || tyni_raster_solid(b->cutout, x, y))) {
+            depth[x] = z;
+            b->pixels++;
+            if (colour)
+                memcpy(colour + 12 * (ptrdiff_t)x, seen, sizeof seen);
+        }
+    }
+}
+
+static void span_shadow(brush *b, int32_t y, int32_t from, int32_t to)
+{
+    const tyni_raster_pass *pass = b->pass;
+    const tyni_raster_piece *piece = b->piece;
+    float *depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
+    const float row = piece->plane.dy * (float)(y - piece->plane.y0) + piece->plane.value;
+    for (int32_t x = from; x < to; x++) {
+        const float value = piece->plane.dx * (float)(x - piece->plane.x0) + row;
+        const float z = tyni_minf(tyni_clampf(value, piece->low, piece->high), 1.0f);
+        if (z > depth[x] && (!b->cutout || tyni_raster_solid(b->cutout, x, y))) {
+            depth[x] = z;
+            b->pixels++;
+        }
+    }
+}
+
+/* Rows y .. end - 1 between two edges. */
+static int fill_rows(brush *b, edge *left, edge *right, int32_t y, int32_t end)
+{
+    const int32_t width = b->pass->view.width;
+    int covered = 0;
+    for (; y < end; y++) {
+        const int32_t from = tyni_maxi(left->x, 0), to = tyni_mini(right->x, width);
+        if (from < to) {
+            covered = 1;
+            if (b->probe)
+                return 1;
+            if (b->pass->kind == TYNI_RASTER_SHADOW)
+                span_shadow(b, y, from, to);
+            else
+                span_seen(b, y, from, to);
+        }
+        advance(left);
+        advance(right);
+    }
+    return covered;
+}
+
+static void order(const tyni_raster_point **a, const tyni_raster_point **b)
+{
+    if ((*b)->y < (*a)->y) {
+        const tyni_raster_point *swap = *a;
+        *a = *b;
+        *b = swap;
+    }
+}
+
+/* The part of a triangle in rows first .. end - 1. Says whether it covers a pixel there. */
+static int fill_triangle(brush *b, const tyni_raster_point *top, const tyni_raster_point *middle,
+                         const tyni_raster_point *bottom, int32_t first, int32_t end)
+{
+    edge longer, shorter;
+    int32_t y, turn, last;
+    int64_t side;
+    int covered = 0;
+    order(&top, &middle);
+    order(&middle, &bottom);
+    order(&top, &middle);
+    y = tyni_maxi(first, first_row(top->y));
+    last = tyni_mini(end, first_row(bottom->y));
+    if (y >= last)
+        return 0;
+    turn = tyni_clampi(first_row(middle->y), y, last);
+    side = (int64_t)(middle->x - top->x) * (bottom->y - top->y) - (int64_t)(bottom->x - top->x) * (middle->y - top->y);
+    if (side == 0)
+        return 0;
+    start(&longer, top, bottom, y, last - y > 1);
+    if (y < turn) {
+        start(&shorter, top, middle, y, turn - y > 1);
+        covered = side > 0 ? fill_rows(b, &longer, &shorter, y, turn) : fill_rows(b, &shorter, &longer, y, turn);
+        if (covered && b->probe)
+            return 1;
+    }
+    if (turn < last) {
+        start(&shorter, middle, bottom, turn, last - turn > 1);
+        covered |= side > 0 ? fill_rows(b, &longer, &shorter, turn, last) : fill_rows(b, &shorter, &longer, turn, last);
+    }
+    return covered;
+}
+
+/* A piece as a fan. A triangle is counted in the first band in which it covers a pixel. */
+static int64_t fill_piece(brush *b, int32_t first, int32_t end, int32_t piece_first)
+{
+    const tyni_raster_point *p = b->piece->corner;
+    int64_t drawn = 0;
+    for (int32_t i = 2; i < b->piece->corners; i++) {
+        if (!fill_triangle(b, &p[0], &p[i - 1], &p[i], first, end))
+            continue;
+        if (piece_first < first) {
+            int before;
+            b->probe = 1;
+            before = fill_triangle(b, &p[0], &p[i - 1], &p[i], piece_first, first);
+            b->probe = 0;
+            if (before)
+                continue;
+        }
+        drawn++;
+    }
+    return drawn;
+}
+
+void tyni_raster_fill(void *argument, int32_t band, int32_t worker)
+{
+    const tyni_raster_pass *pass = argument;
+    const tyn_raster *raster = pass->raster;
+    const int32_t first = band * TYNI_RASTER_BAND, end = tyni_mini(first + TYNI_RASTER_BAND, pass->view.height);
+    tyni_raster_tally *tally = &raster->tallies[worker];
+    tyni_raster_cutout cutout;
+    brush b = {pass, NULL, NULL, 0, 0};
+    int64_t drawn = 0;
+    for (int32_t c = 0; c < pass->chunks; c++) {
+        const tyni_raster_chunk *chunk = &raster->chunks[c];
+        if (chunk->first >= end || chunk->last < first)
+            continue;
+        for (int32_t i = c * TYNI_RASTER_CHUNK; i < c * TYNI_RASTER_CHUNK + chunk->count; i++) {
+            const tyni_raster_rows rows = raster->rows[i];
+            if (rows.first >= end || rows.last < first || rows.first > rows.last)
+                continue;
+            b.piece = &raster->pieces[i];
+            b.cutout = NULL;
+            if (tyni_raster_masked(&pass->meshes[b.piece->mesh])) {
+                tyni_raster_set_cutout(pass, b.piece, &cutout);
+                b.cutout = &cutout;
+            }
+            drawn += fill_piece(&b, first, end, rows.first);
+        }
+    }
+    tally->drawn += drawn;
+    tally->pixels += b.pixels;
+}

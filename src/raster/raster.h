@@ -1,0 +1,199 @@
+/* raster.h - the rasterizer's inside: clip, set up, fill, shade.
+ *
+ * A view (a camera or a shadow map) takes a world point to four numbers: x, y, value and w. x / w and y / w say where on the
+ * image it is; value / w is linear over the image on a plane. A camera has value = 1, so that value / w is 1 / depth; a shadow
+ * map has its Z. All else is the same for both.
+ *
+ * Triangles go through in batches. Stage 1 (setup.c, clip.c) makes one piece of each triangle: a convex polygon on a grid of
+ * 1/256 pixel and the plane of its value. Stage 2 (fill.c) fills the pieces in order, each job into a band of rows of its own.
+ * So neither the number of workers nor their order nor the size of a batch changes a byte. What a pixel shows is kept as mesh
+ * and triangle in the colour image itself until all is filled; then shade.c turns these numbers into light, once a pixel. */
+#ifndef TYNI_RASTER_H
+#define TYNI_RASTER_H
+
+#include "base.h"
+#include "jobs.h"
+#include "vec.h"
+
+#define TYNI_RASTER_CHUNK 64  /* triangles that one job sets up */
+#define TYNI_RASTER_BAND 32   /* rows that one job fills */
+#define TYNI_RASTER_SUB 256   /* grid positions per pixel */
+#define TYNI_RASTER_CORNERS 8 /* 3, and one more for the near plane and each side of the guard band */
+#define TYNI_RASTER_BATCH 2048
+#define TYNI_RASTER_NOTHING UINT32_MAX /* a mesh number: background */
+
+/* The guard band: pieces are cut this many pixels off the image's centre. With images up to 32768 that keeps grid coordinates
+ * below (65536 + 16384) * 256 < 2^25, differences below 2^26, and products of two of them below 2^52. */
+#define TYNI_RASTER_GUARD 65536.0f
+
+typedef struct tyni_raster_vertex {
+    float x, y, value, w;
+} tyni_raster_vertex;
+
+typedef struct tyni_raster_point {
+    int32_t x, y; /* 1/256 pixel from the image's top left corner */
+} tyni_raster_point;
+
+/* A function that is linear over the image: value at the centre of pixel (x0, y0), and change per pixel. */
+typedef struct tyni_raster_plane {
+    float value, dx, dy;
+    int32_t x0, y0;
+} tyni_raster_plane;
+
+/* What is left of a triangle: 64 bytes that all pieces use, and the corners that only clipping makes. */
+typedef struct tyni_raster_piece {
+    tyni_raster_plane plane;
+    float low, high; /* of value / w over the corners; the plane's errors must not leave them */
+    uint32_t mesh, triangle;
+    int32_t corners; /* 0: nothing to draw */
+    tyni_raster_point corner[TYNI_RASTER_CORNERS];
+    uint32_t pad[6];
+} tyni_raster_piece;
+
+/* Rows of the image that a piece touches; first > last: none. */
+typedef struct tyni_raster_rows {
+    uint16_t first, last;
+} tyni_raster_rows;
+
+/* The triangles of one set-up job, which may belong to several meshes. */
+typedef struct tyni_raster_chunk {
+    uint32_t mesh, triangle; /* the first */
+    int32_t count;
+    int32_t first, last; /* rows that any of its pieces touches */
+    int32_t bad;
+} tyni_raster_chunk;
+
+/* A worker's sums, on a cache line of its own. */
+typedef struct tyni_raster_tally {
+    int64_t drawn, pixels;
+    uint8_t pad[48];
+} tyni_raster_tally;
+
+typedef struct tyni_raster_view {
+    float origin[3];           /* subtracted from a world point first */
+    float row[4][3], shift[4]; /* then these give x, y, value, w */
+    float middle[2];           /* x / w and y / w at the image's centre */
+    float half[2];             /* pixels from its top left corner to there */
+    float scale[2];            /* pixels per x / w, y / w */
+    float step[2];             /* x / w, y / w per pixel */
+    float clip;                /* w below this is cut off; > 0 */
+    int32_t width, height;
+} tyni_raster_view;
+
+typedef enum tyni_raster_kind {
+    TYNI_RASTER_DEPTH, /* a camera's depth, smallest wins */
+    TYNI_RASTER_SEEN,  /* the same, and what is seen goes into the colour image */
+    TYNI_RASTER_SHADOW /* a shadow map, largest wins */
+} tyni_raster_kind;
+
+/* One drawing of all meshes. */
+typedef struct tyni_raster_pass {
+    tyn_raster *raster;
+    tyni_jobs jobs;
+    tyni_raster_view view;
+    tyni_raster_kind kind;
+    const tyn_mesh *meshes;
+    uint32_t mesh_count;
+    uint8_t *depth, *colour; /* rows of floats; rows of 3 floats or NULL */
+    ptrdiff_t depth_stride, colour_stride;
+    float nearest, clear; /* of depth: less is not seen; what an empty pixel holds */
+    int32_t chunks;       /* in the batch at hand */
+    int64_t triangles, bad;
+} tyni_raster_pass;
+
+/* What shading needs of a light beyond tyn_light; see light.c. */
+typedef struct tyni_raster_lamp {
+    const tyn_light *light;
+    float row[4][3], shift[4]; /* the map's U, V, Z, W of a point relative to the camera */
+    tyni_vec3 across, down;    /* world displacement per u and per v (times w where the map is perspective) */
+    tyni_vec3 along;           /* parallel: displacement per z. perspective: the apex relative to the camera */
+    float slope_u, slope_v;    /* perspective: z per u and v that any surface has */
+    float apex;                /* perspective: Z at the apex */
+    float bias, bias_z;        /* bias of the compare is |bias - bias_z * z| */
+    tyni_vec3 towards;         /* directional: to the light */
+    tyni_vec3 position;        /* spot: relative to the camera */
+    float cosine;              /* of half the cone's angle */
+    int32_t parallel;
+} tyni_raster_lamp;
+
+struct tyn_raster {
+    int32_t width, height, batch, workers;
+    tyni_raster_piece *pieces;  /* batch */
+    tyni_raster_rows *rows;     /* batch */
+    tyni_raster_chunk *chunks;  /* batch / 64, rounded up */
+    tyni_raster_tally *tallies; /* workers */
+    tyni_jobs_count *counts;    /* workers */
+    tyni_raster_lamp *lamps;    /* TYN_MAX_LIGHTS */
+};
+
+/* view.c */
+void tyni_raster_view_camera(tyni_raster_view *view, const tyn_camera *camera, int32_t width, int32_t height);
+void tyni_raster_view_shadow(tyni_raster_view *view, const tyn_shadow *shadow);
+
+/* A triangle's own plane: normal (of any length), and what gradients of its corners' values need. */
+typedef struct tyni_raster_facet {
+    tyni_vec3 a, b, normal;
+    float unit, square;
+} tyni_raster_facet;
+
+/* setup.c. 0 for a triangle without area. */
+int tyni_raster_make_facet(tyni_vec3 p0, tyni_vec3 p1, tyni_vec3 p2, tyni_raster_facet *facet);
+
+/* Along the plane, of a quantity that is larger at p1 and p2 than at p0 by da and db. */
+tyni_vec3 tyni_raster_gradient(const tyni_raster_facet *facet, float da, float db);
+
+int tyni_raster_transform(const tyni_raster_view *view, const float point[3], tyni_raster_vertex *vertex);
+void tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex v[3], tyni_raster_plane *plane);
+void tyni_raster_setup(void *pass, int32_t chunk, int32_t worker);
+
+/* clip.c: out of 3 vertices 0 or 3 .. TYNI_RASTER_CORNERS. */
+int32_t tyni_raster_outside(const tyni_raster_view *view, const tyni_raster_vertex *v);
+int32_t tyni_raster_clip(const tyni_raster_view *view, tyni_raster_vertex v[TYNI_RASTER_CORNERS]);
+
+/* fill.c */
+void tyni_raster_fill(void *pass, int32_t band, int32_t worker);
+
+/* pass.c: clears, sets up and fills. */
+tyn_status tyni_raster_run(tyni_raster_pass *pass);
+
+/* texture.c */
+typedef struct tyni_raster_cutout {
+    const tyn_image *mask;
+    tyni_raster_plane u, v, w; /* u / w, v / w, 1 / w */
+} tyni_raster_cutout;
+
+void tyni_raster_texel(const tyn_image *texture, float u, float v, float rgb[3]);
+void tyni_raster_set_cutout(const tyni_raster_pass *pass, const tyni_raster_piece *piece, tyni_raster_cutout *cutout);
+int tyni_raster_solid(const tyni_raster_cutout *cutout, int32_t x, int32_t y);
+
+static inline int tyni_raster_masked(const tyn_mesh *mesh)
+{
+    return mesh->material.mask && mesh->texcoords;
+}
+
+static inline float tyni_raster_at(const tyni_raster_plane *p, int32_t x, int32_t y)
+{
+    return p->dx * (float)(x - p->x0) + (p->dy * (float)(y - p->y0) + p->value);
+}
+
+/* light.c */
+void tyni_raster_set_lamp(tyni_raster_lamp *lamp, const tyn_light *light, const float origin[3], float bias);
+
+/* How z changes over the map on a plane through `point` (relative to the camera) with that normal. */
+void tyni_raster_slope(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, float slope[2]);
+
+/* The share of the light that arrives, 0 .. 1, shadows only. */
+float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, const float slope[2]);
+
+/* shade.c */
+typedef struct tyni_raster_shading {
+    const tyni_raster_pass *pass;
+    const tyn_surface *surface;
+    const tyni_raster_lamp *lamps;
+    float sigma[3];
+    int32_t hazy; /* sigma is not zero */
+} tyni_raster_shading;
+
+void tyni_raster_shade(void *shading, int32_t band, int32_t worker);
+
+#endif

@@ -1,0 +1,91 @@
+/* texture.c - textures (bilinear) and masks (nearest texel). Both repeat; v runs up while rows run down. */
+#include "raster/raster.h"
+
+#include "check.h"
+#include "vec.h"
+
+/* The part behind the point, 0 <= x < 1 but for rounding to 1; what is not finite gives 0. */
+static float fraction(float x)
+{
+    const float f = x - floorf(x);
+    return f > 0.0f ? f : 0.0f;
+}
+
+static void load(const tyn_image *texture, const uint8_t *row, int32_t x, float rgb[3])
+{
+    if (texture->format == TYN_RGB8_LINEAR) {
+        const uint8_t *p = row + 3 * (ptrdiff_t)x;
+        for (int32_t c = 0; c < 3; c++)
+            rgb[c] = (float)p[c];
+    } else if (texture->format == TYN_RGB16_LINEAR) {
+        const uint16_t *p = (const uint16_t *)(const void *)row + 3 * (ptrdiff_t)x;
+        for (int32_t c = 0; c < 3; c++)
+            rgb[c] = (float)p[c];
+    } else {
+        const float *p = (const float *)(const void *)row + 3 * (ptrdiff_t)x;
+        for (int32_t c = 0; c < 3; c++)
+            rgb[c] = tyni_clampf(p[c], 0.0f, 1e30f);
+    }
+}
+
+/* Texel i of n is centred at (i + 0.5) / n. Gives the texel at or before the point, its successor, and the way between. */
+static float neighbours(float at, int32_t n, int32_t *first, int32_t *second)
+{
+    const float x = fraction(at) * (float)n - 0.5f; /* -0.5 .. n - 0.5 */
+    const int32_t i = tyni_clampi(tyni_floori(x), -1, n - 1);
+    *first = i < 0 ? n - 1 : i;
+    *second = i + 1 < n ? i + 1 : 0;
+    return x - (float)i;
+}
+
+void tyni_raster_texel(const tyn_image *texture, float u, float v, float rgb[3])
+{
+    const float unit = texture->format == TYN_RGB8_LINEAR    ? 1.0f / 255.0f
+                       : texture->format == TYN_RGB16_LINEAR ? 1.0f / 65535.0f
+                                                             : 1.0f;
+    const float whole_v = fraction(v);
+    int32_t x0, x1, y0, y1;
+    const float s = neighbours(u, texture->width, &x0, &x1), t = neighbours(1.0f - whole_v, texture->height, &y0, &y1);
+    const uint8_t *upper = tyni_image_row(texture, y0), *lower = tyni_image_row(texture, y1);
+    float a[3], b[3], c[3], d[3];
+    load(texture, upper, x0, a);
+    load(texture, upper, x1, b);
+    load(texture, lower, x0, c);
+    load(texture, lower, x1, d);
+    for (int32_t i = 0; i < 3; i++) {
+        const float top = a[i] + s * (b[i] - a[i]), bottom = c[i] + s * (d[i] - c[i]);
+        rgb[i] = (top + t * (bottom - top)) * unit;
+    }
+}
+
+void tyni_raster_set_cutout(const tyni_raster_pass *pass, const tyni_raster_piece *piece, tyni_raster_cutout *cutout)
+{
+    const tyn_mesh *mesh = &pass->meshes[piece->mesh];
+    const uint32_t *index = mesh->indices + (size_t)piece->triangle * 3;
+    tyni_raster_vertex v[3];
+    cutout->mask = mesh->material.mask;
+    cutout->u.x0 = cutout->v.x0 = cutout->w.x0 = piece->plane.x0;
+    cutout->u.y0 = cutout->v.y0 = cutout->w.y0 = piece->plane.y0;
+    for (int32_t i = 0; i < 3; i++) {
+        (void)tyni_raster_transform(&pass->view, mesh->positions + (size_t)index[i] * 3, &v[i]);
+        v[i].value = mesh->texcoords[(size_t)index[i] * 2];
+    }
+    tyni_raster_set_plane(&pass->view, v, &cutout->u);
+    for (int32_t i = 0; i < 3; i++)
+        v[i].value = mesh->texcoords[(size_t)index[i] * 2 + 1];
+    tyni_raster_set_plane(&pass->view, v, &cutout->v);
+    for (int32_t i = 0; i < 3; i++)
+        v[i].value = 1.0f;
+    tyni_raster_set_plane(&pass->view, v, &cutout->w);
+}
+
+int tyni_raster_solid(const tyni_raster_cutout *cutout, int32_t x, int32_t y)
+{
+    const tyn_image *mask = cutout->mask;
+    const float w = 1.0f / tyni_raster_at(&cutout->w, x, y);
+    const float u = fraction(tyni_raster_at(&cutout->u, x, y) * w), v = fraction(tyni_raster_at(&cutout->v, x, y) * w);
+    const int32_t i = tyni_mini((int32_t)(u * (float)mask->width), mask->width - 1);
+    const int32_t j = tyni_mini((int32_t)(v * (float)mask->height), mask->height - 1);
+    const uint8_t *row = tyni_image_row(mask, mask->height - 1 - j);
+    return row[i] >= 128;
+}
