@@ -225,7 +225,7 @@ typedef enum tyn_preset {
 typedef struct tyn_config {
     int32_t width; /* pixels, 1 .. TYN_MAX_SIZE: the largest image; a frame may be smaller */
     int32_t height;
-    int32_t slices;        /* epipolar slices, 2 .. 65536; 0: as TYN_PRESET_QUALITY */
+    int32_t slices;        /* epipolar slices, 8 .. 65536; 0: as TYN_PRESET_QUALITY */
     int32_t samples;       /* samples along a slice, at most: one per pixel column (row), each 2nd, 4th ... so that they
                               fit; 2 .. 65536; 0: all */
     int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: 16 */
@@ -247,6 +247,21 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
 /* Memory for a context. *bytes is exact; the block must be aligned to TYN_ALIGNMENT. TYN_E_NULL, TYN_E_CONFIG. */
 tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_ALIGNMENT 64
+
+/* The same number as a constant expression, for a static block:
+ *     static union { uint64_t align[8]; uint8_t bytes[TYN_MEMORY(320, 240, 64, 160, 256, 1, 1)]; } block;
+ * (and see to its alignment: TYN_ALIGNMENT). All arguments as in tyn_config, with no zeros. */
+#define TYN_MEMORY(width, height, slices, samples, shadow_size, lights, workers)                                               \
+    (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) + TYNI_BYTES(slices, 8) +        \
+     ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
+     (size_t)(workers) * (TYNI_BYTES(shadow_size, 2) + 3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +               \
+                          2 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
+#define TYN_CONTEXT_BYTES 256
+#define TYN_STATS_BYTES 128
+#define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
+#define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))
+#define TYNI_SAMPLES(width, height, samples)                                                                                   \
+    ((size_t)((samples) < TYNI_LONGER(width, height) ? (samples) : TYNI_LONGER(width, height)))
 
 typedef struct tyn_context tyn_context;
 

@@ -73,6 +73,11 @@ void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyn
 {
     tyni_vec3 to = tyni_vec_sub(lamp->position, tyni_vec_scale(v, t)); /* from the point to the light */
     float r2 = tyni_maxf(tyni_vec_dot(to, to), 1e-20f), r = sqrtf(r2);
+    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+        for (int32_t c = 0; c < 3; c++)
+            density[c] = tyni_num_exp(-medium->sigma[c] * t);
+        return;
+    }
     /* light travels along -to, towards the camera is -v */
     tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(to, v) / r, -1.0f, 1.0f), density);
     for (int32_t c = 0; c < 3; c++)

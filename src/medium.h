@@ -65,7 +65,7 @@ void tyni_integral_at(const tyni_integral *integral, float t, float *out);
  * three channels. */
 void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3]);
 
-/* The spot's integrand per dt in all channels. */
+/* The integrand per dt in all channels. */
 void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t, float density[3]);
 
 #endif

@@ -1,0 +1,466 @@
+/* frame.c - see frame.h. Data flows from top to bottom:
+ *
+ *   for each light:  lay out its slices
+ *       slice jobs:  depth along the line -> break bits -> ray samples -> row of thresholds -> visibility at the rays
+ *                    -> interpolation -> the finished line into memory
+ *       pixel jobs:  the two nearest lines -> visibility -> light; rejected pixels by rays of their own; after the last light
+ *                    transmittance, colour, exposure, tone, dither, format */
+#include "frame.h"
+
+#include "base.h"
+#include "check.h"
+#include "composite.h"
+#include "debug.h"
+#include "entry.h"
+#include "gather.h"
+#include "medium.h"
+#include "num.h"
+#include "ray.h"
+#include "row.h"
+#include "sample.h"
+#include "slice.h"
+#include "view.h"
+
+#define BAND 8   /* rows of pixels a job */
+#define CHUNK 32 /* pixels at a time: one word of rejected bits */
+
+/* One light on its way through the frame. */
+typedef struct pass {
+    tyn_context *context;
+    const tyn_frame *frame;
+    tyni_view view;
+    tyni_medium medium;
+    tyni_lamp lamp;
+    tyni_slices slices;
+    tyni_field field;
+    tyn_method method;
+    int32_t channels[2], count; /* the channels whose visibility is kept */
+    int first, last;            /* of the lights */
+} pass;
+
+static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
+{
+    tyni_arena arena = {NULL, 0, 0};
+    size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
+    arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
+    s->threshold = tyni_arena_take(&arena, (size_t)c->config.shadow_size, sizeof *s->threshold);
+    s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
+    s->value[0] = tyni_arena_take(&arena, samples, sizeof *s->value[0]);
+    s->value[1] = tyni_arena_take(&arena, samples, sizeof *s->value[1]);
+    s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
+    s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
+    s->stats = tyni_arena_take(&arena, 1, sizeof *s->stats);
+}
+
+/* ---- slices -------------------------------------------------------------------------------------------------------- */
+
+/* Where the ray ends for this light: the surface, or the far side of a spot's cone. 0: no part of it is in the cone. */
+static int ray_range(const pass *p, tyni_vec3 v, float s, float *t0, float *t1)
+{
+    *t0 = 0.0f;
+    *t1 = s;
+    return s > 0.0f && tyni_view_clip_cone(&p->lamp, v, t0, t1);
+}
+
+/* Visibility of one ray in the kept channels. */
+static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, uint32_t position, tyn_stats *stats,
+                      float value[2])
+{
+    const tyni_medium *medium = &p->medium;
+    tyni_integral it;
+    float t0, t1, norm[3], light[3] = {0.0f, 0.0f, 0.0f};
+    value[0] = value[1] = 0.0f;
+    stats->rays++;
+    if (!ray_range(p, v, s, &t0, &t1))
+        return;
+    if (p->context->config.rays == TYN_RAYS_STEPS) {
+        float all[3];
+        tyni_ray_steps(&p->lamp, medium, v, t0, t1, p->context->config.steps, all);
+        light[0] = all[p->channels[0]];
+        light[1] = all[p->channels[1]];
+    } else {
+        tyni_integral_begin(&it, medium, &p->lamp, v, t0, t1, p->channels, p->count);
+        if (!row || tyni_ray_coarse(row, &it, v)) {
+            tyni_ray_walk(&p->lamp, &it, v, light);
+            stats->walks++;
+        } else {
+            tyni_ray_row(row, position, &p->lamp, &it, v, light);
+        }
+    }
+    tyni_integral_norm(medium, &p->lamp, v, t0, t1, norm);
+    for (int32_t i = 0; i < p->count; i++) {
+        float n = norm[p->channels[i]];
+        value[i] = n > 0.0f ? light[i] / n : 0.0f;
+    }
+    if (p->count == 1)
+        value[1] = value[0];
+}
+
+/* A spot sees depth only as far as its cone reaches: clamps to it, so that breaks behind the beam cost nothing, and marks
+ * samples beside the beam by depth 0. */
+static void clamp_to_cone(const pass *p, const tyni_slice *slice, float *depth)
+{
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        tyni_vec3 d = tyni_vec_mad(slice->a, tyni_slice_p(&p->slices, j), slice->b);
+        float length = tyni_vec_length(d), t0, t1;
+        depth[j] = ray_range(p, tyni_vec_scale(d, 1.0f / length), depth[j] * length, &t0, &t1) ? t1 / length : 0.0f;
+    }
+}
+
+static float reach_of(const pass *p, const tyni_slice *slice, const float *depth)
+{
+    float a = tyni_vec_dot(slice->a, slice->ex), b = tyni_vec_dot(slice->b, slice->ex), reach = 0.0f;
+    for (int32_t j = slice->first; j <= slice->last; j++)
+        reach = tyni_maxf(reach, depth[j] * (a + b * tyni_slice_p(&p->slices, j)));
+    return reach;
+}
+
+/* Packs a line's samples; each line has the scale of its largest value. */
+static void store_line(const pass *p, int32_t index, int32_t first, int32_t last, const tyni_scratch *s)
+{
+    uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
+    float *scale = p->context->scales[index], inverse[2], far_inverse = 1.0f / p->view.far_depth;
+    for (int32_t n = 0; n < 2; n++) {
+        scale[n] = 0.0f;
+        for (int32_t j = first; j <= last; j++)
+            scale[n] = tyni_maxf(scale[n], s->value[n][j]);
+        inverse[n] = scale[n] > 1e-30f ? 1.0f / scale[n] : 0.0f;
+    }
+    for (int32_t j = first; j <= last; j++)
+        if (s->depth[j] > 0.0f)
+            entries[j] = tyni_entry_pack(s->value[0][j], s->value[1][j], inverse, s->depth[j] * far_inverse);
+}
+
+static void slice_job(void *argument, int32_t index, int32_t worker)
+{
+    const pass *p = argument;
+    const tyn_config *config = &p->context->config;
+    uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
+    tyni_scratch s;
+    tyni_slice slice;
+    tyni_row row;
+    scratch_of(p->context, worker, &s);
+    memset(entries, 0, sizeof *entries * (size_t)p->field.pitch);
+    tyni_slice_line(&slice, &p->slices, &p->lamp, &p->view, index);
+    if (slice.first > slice.last)
+        return;
+    tyni_sample_depths(s.depth, &p->slices, &slice, &p->view, &p->frame->depth);
+    if (p->lamp.kind == TYN_LIGHT_SPOT)
+        clamp_to_cone(p, &slice, s.depth);
+    s.stats->slices++;
+    s.stats->samples += slice.last - slice.first + 1;
+    s.stats->breaks += tyni_sample_breaks(s.breaks, s.depth, slice.first, slice.last, config->break_threshold);
+    tyni_sample_rays(s.rays, s.breaks, &p->slices, &slice, config->initial_step);
+    if (p->frame->debug == TYN_DEBUG_LINES || p->frame->debug == TYN_DEBUG_SAMPLES || p->frame->debug == TYN_DEBUG_BREAKS) {
+        tyni_debug_mark(entries, s.rays, s.breaks, slice.first, slice.last);
+        return;
+    }
+    tyni_row_build(&row, s.threshold, config->shadow_size, &p->slices, &slice, &p->lamp, reach_of(p, &slice, s.depth));
+    for (int32_t j = tyni_sample_next(s.rays, slice.first, slice.last); j <= slice.last;
+         j = tyni_sample_next(s.rays, j + 1, slice.last)) {
+        float at = tyni_slice_p(&p->slices, j), length, value[2];
+        tyni_vec3 d = tyni_vec_mad(slice.a, at, slice.b);
+        length = tyni_vec_length(d);
+        ray_value(p, &row, tyni_vec_scale(d, 1.0f / length), s.depth[j] * length, tyni_row_position(&row, at), s.stats, value);
+        s.value[0][j] = value[0];
+        s.value[1][j] = value[1];
+    }
+    tyni_sample_interpolate(s.value[0], s.rays, slice.first, slice.last);
+    tyni_sample_interpolate(s.value[1], s.rays, slice.first, slice.last);
+    store_line(p, index, slice.first, slice.last, &s);
+}
+
+/* TYN_METHOD_SUBSAMPLE: a row of the coarse grid. */
+static void grid_job(void *argument, int32_t index, int32_t worker)
+{
+    const pass *p = argument;
+    uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
+    int32_t y = tyni_mini(index * p->field.spacing, p->view.height - 1);
+    const float *depth = tyni_image_row(&p->frame->depth, y);
+    tyni_scratch s;
+    scratch_of(p->context, worker, &s);
+    memset(entries, 0, sizeof *entries * (size_t)p->field.pitch);
+    for (int32_t i = 0; i < p->field.columns; i++) {
+        int32_t x = tyni_mini(i * p->field.spacing, p->view.width - 1);
+        tyni_vec3 d = tyni_view_direction(&p->view, (float)x + 0.5f, (float)y + 0.5f);
+        float length = tyni_vec_length(d), value[2], t0, t1;
+        tyni_vec3 v = tyni_vec_scale(d, 1.0f / length);
+        s.depth[i] = tyni_view_depth(&p->view, depth[x]);
+        ray_value(p, NULL, v, s.depth[i] * length, 0, s.stats, value);
+        s.depth[i] = ray_range(p, v, s.depth[i] * length, &t0, &t1) ? t1 / length : 0.0f;
+        s.value[0][i] = value[0];
+        s.value[1][i] = value[1];
+    }
+    s.stats->samples += p->field.columns;
+    store_line(p, index, 0, p->field.columns - 1, &s);
+}
+
+/* ---- pixels -------------------------------------------------------------------------------------------------------- */
+
+/* Adds a light to `count` pixels from (x, y) on. */
+static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const float *depth, tyn_stats *stats, float *rgb,
+                      uint32_t *rejected)
+{
+    int32_t steps = p->context->config.rays == TYN_RAYS_STEPS ? p->context->config.steps : 0;
+    const tyni_medium *m = &p->medium;
+    *rejected = 0;
+    for (int32_t i = 0; i < count; i++) {
+        float px = (float)(x + i) + 0.5f, py = (float)y + 0.5f, t0, t1, length, norm[3], mix[3], value[3], light[3];
+        tyni_vec3 d = tyni_view_direction(&p->view, px, py), v;
+        length = tyni_vec_length(d);
+        v = tyni_vec_scale(d, 1.0f / length);
+        if (!ray_range(p, v, tyni_view_depth(&p->view, depth[i]) * length, &t0, &t1))
+            continue;
+        if (p->method == TYN_METHOD_EPIPOLAR) {
+            float at = t1 / (length * p->view.far_depth);
+            *rejected |= (uint32_t)!tyni_gather_slices(&p->field, &p->slices, px, py, at, value) << i;
+        } else if (p->method == TYN_METHOD_SUBSAMPLE) {
+            tyni_gather_grid(&p->field, px, py, t1 / (length * p->view.far_depth), value);
+        }
+        if (p->method == TYN_METHOD_MARCH || *rejected >> i & 1u) {
+            tyni_ray_pixel(&p->lamp, m, v, t1, steps, light);
+            stats->rays += p->method == TYN_METHOD_MARCH;
+            for (int32_t c = 0; c < 3; c++)
+                rgb[3 * i + c] += light[c];
+            continue;
+        }
+        light[m->low] = value[0];
+        light[m->high] = value[1];
+        light[m->middle] = value[0] + (value[1] - value[0]) * m->blend;
+        tyni_integral_norm(m, &p->lamp, v, t0, t1, norm);
+        mix[0] = mix[1] = mix[2] = 1.0f;
+        if (p->lamp.kind == TYN_LIGHT_DIRECTIONAL)
+            tyni_medium_mix(m, tyni_clampf(tyni_vec_dot(v, p->lamp.to_light), -1.0f, 1.0f), mix);
+        for (int32_t c = 0; c < 3; c++)
+            rgb[3 * i + c] += light[c] * norm[c] * mix[c] * p->lamp.colour[c];
+    }
+    for (uint32_t bits = *rejected; bits; bits &= bits - 1)
+        stats->rejected++;
+}
+
+/* L = transmittance * colour + L_scat, into the target's format. */
+static void finish(const pass *p, int32_t x, int32_t y, int32_t count, const float *depth, const float *light)
+{
+    static const tyn_display plain = {1.0f, TYN_TONE_CLAMP, 0};
+    const tyn_frame *frame = p->frame;
+    float rgb[3 * CHUNK];
+    if (frame->scatter.pixels)
+        tyni_composite_write(&frame->scatter, &plain, x, y, count, light);
+    if (!frame->target.pixels)
+        return;
+    tyni_composite_read(&frame->colour, x, y, count, rgb);
+    for (int32_t i = 0; i < count; i++) {
+        tyni_vec3 d = tyni_view_direction(&p->view, (float)(x + i) + 0.5f, (float)y + 0.5f);
+        float s = tyni_view_depth(&p->view, depth[i]) * tyni_vec_length(d);
+        for (int32_t c = 0; c < 3; c++)
+            rgb[3 * i + c] = tyni_num_exp(-p->medium.sigma[c] * s) * rgb[3 * i + c] + light[3 * i + c];
+    }
+    tyni_composite_write(&frame->target, &frame->display, x, y, count, rgb);
+}
+
+static void debug_chunk(const pass *p, int32_t x, int32_t y, int32_t count, const float *depth, uint32_t rejected)
+{
+    static const tyn_display plain = {1.0f, TYN_TONE_FILM, 0};
+    float rgb[3 * CHUNK];
+    tyni_composite_read(&p->frame->colour, x, y, count, rgb);
+    for (int32_t i = 0; i < count; i++) {
+        float exposure = p->frame->display.exposure > 0.0f ? p->frame->display.exposure : 1.0f;
+        for (int32_t c = 0; c < 3; c++)
+            rgb[3 * i + c] *= 0.5f * exposure;
+        tyni_debug_pixel(p->frame->debug, &p->view, &p->lamp, &p->slices, &p->field, x + i, y, depth[i],
+                         (int)(rejected >> i & 1u), rgb + 3 * i);
+    }
+    tyni_composite_write(&p->frame->target, &plain, x, y, count, rgb);
+}
+
+static void band_job(void *argument, int32_t index, int32_t worker)
+{
+    const pass *p = argument;
+    int32_t end = tyni_mini((index + 1) * BAND, p->view.height);
+    tyni_scratch s;
+    scratch_of(p->context, worker, &s);
+    for (int32_t y = index * BAND; y < end; y++) {
+        const float *depth = tyni_image_row(&p->frame->depth, y);
+        float *sum = p->context->light ? p->context->light + (ptrdiff_t)y * p->view.width * 3 : NULL;
+        for (int32_t x = 0; x < p->view.width; x += CHUNK) {
+            int32_t count = tyni_mini(CHUNK, p->view.width - x);
+            float light[3 * CHUNK];
+            uint32_t rejected = 0;
+            if (p->first)
+                memset(light, 0, sizeof light);
+            else
+                memcpy(light, sum + 3 * (ptrdiff_t)x, sizeof *light * 3u * (size_t)count);
+            if (p->method != TYN_METHOD_NONE)
+                add_light(p, x, y, count, depth + x, s.stats, light, &rejected);
+            if (!p->last)
+                memcpy(sum + 3 * (ptrdiff_t)x, light, sizeof *light * 3u * (size_t)count);
+            else
+                finish(p, x, y, count, depth + x, light);
+            if (p->frame->debug && p->first && p->frame->target.pixels)
+                debug_chunk(p, x, y, count, depth + x, rejected);
+        }
+    }
+}
+
+/* ---- the frame ----------------------------------------------------------------------------------------------------- */
+
+/* A grid with about as many points as the slices would have initial rays. */
+static int32_t grid_layout(pass *p)
+{
+    const tyn_config *c = &p->context->config;
+    tyni_field *f = &p->field;
+    float rays = (float)c->slices * ((float)p->context->samples / (float)c->initial_step + 1.0f);
+    float pixels = (float)p->view.width * (float)p->view.height;
+    for (f->spacing = 1;; f->spacing++) {
+        f->columns = (p->view.width - 1 + f->spacing - 1) / f->spacing + 1;
+        f->rows = (p->view.height - 1 + f->spacing - 1) / f->spacing + 1;
+        if ((float)f->spacing * (float)f->spacing * rays >= pixels && f->columns <= p->context->samples && f->rows <= c->slices)
+            return f->rows;
+    }
+}
+
+static uint64_t now(const tyn_frame *frame)
+{
+    return frame->clock ? frame->clock(frame->clock_context) : 0;
+}
+
+static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *light, tyn_stats *stats)
+{
+    tyn_context *c = p->context;
+    tyn_status status = TYN_OK;
+    uint64_t start = now(p->frame), middle;
+    p->method = c->config.method;
+    if (!light || !p->medium.scatters)
+        p->method = TYN_METHOD_NONE;
+    if (light)
+        tyni_view_lamp(&p->lamp, light, &p->view);
+    /* at the light's own position there is no epipole, and a ray stays inside one texel: a ray for each pixel costs nothing */
+    if (p->method == TYN_METHOD_EPIPOLAR && p->lamp.at_camera)
+        p->method = TYN_METHOD_MARCH;
+    p->field.entries = c->entries;
+    p->field.scales = (const float(*)[2])c->scales;
+    p->field.pitch = c->samples;
+    p->field.threshold = c->config.break_threshold;
+    p->channels[0] = p->medium.low;
+    p->channels[1] = p->medium.high;
+    p->count =
+        p->lamp.kind == TYN_LIGHT_DIRECTIONAL && p->medium.sigma[p->medium.low] == p->medium.sigma[p->medium.high] ? 1 : 2;
+    if (p->method == TYN_METHOD_EPIPOLAR) {
+        int32_t stride = tyni_slice_stride(p->view.width, p->view.height, c->samples);
+        tyni_slice_layout(&p->slices, &p->lamp, p->view.width, p->view.height, c->config.slices, stride);
+        status = tyni_jobs_run(jobs, slice_job, p, p->slices.count);
+    } else if (p->method == TYN_METHOD_SUBSAMPLE) {
+        status = tyni_jobs_run(jobs, grid_job, p, grid_layout(p));
+    }
+    middle = now(p->frame);
+    if (status == TYN_OK)
+        status = tyni_jobs_run(jobs, band_job, p, (p->view.height + BAND - 1) / BAND);
+    stats->slice_ns += middle - start;
+    stats->gather_ns += now(p->frame) - middle;
+    return status;
+}
+
+static void sum_stats(const tyn_context *c, tyn_stats *stats, int64_t pixels)
+{
+    for (int32_t w = 0; w < c->config.workers; w++) {
+        tyni_scratch s;
+        scratch_of(c, w, &s);
+        stats->slices += s.stats->slices;
+        stats->samples += s.stats->samples;
+        stats->breaks += s.stats->breaks;
+        stats->rays += s.stats->rays;
+        stats->walks += s.stats->walks;
+        stats->rejected += s.stats->rejected;
+    }
+    stats->pixels = pixels;
+    stats->rays_percent = 100.0f * (float)(stats->rays + stats->rejected) / (float)pixels;
+    stats->memory = c->bytes;
+    stats->total_ns = stats->slice_ns + stats->gather_ns;
+}
+
+tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
+{
+    tyni_jobs jobs;
+    tyn_stats stats;
+    tyn_status status = TYN_OK;
+    pass p;
+    int32_t lights = tyni_maxi(frame->light_count, 1);
+    memset(&p, 0, sizeof p);
+    memset(&stats, 0, sizeof stats);
+    jobs.executor = frame->executor;
+    jobs.counts = context->counts;
+    jobs.workers = frame->executor ? frame->executor->workers : 1;
+    for (int32_t w = 0; w < context->config.workers; w++) {
+        tyni_scratch s;
+        scratch_of(context, w, &s);
+        memset(s.stats, 0, sizeof *s.stats);
+    }
+    p.context = context;
+    p.frame = frame;
+    tyni_view_camera(&p.view, &frame->camera, frame->depth.width, frame->depth.height);
+    tyni_medium_prepare(&p.medium, frame->media, frame->medium_count);
+    for (int32_t i = 0; i < lights && status == TYN_OK; i++) {
+        p.first = i == 0;
+        p.last = i == lights - 1;
+        status = render_light(&p, &jobs, frame->light_count ? &frame->lights[i] : NULL, &stats);
+    }
+    sum_stats(context, &stats, (int64_t)p.view.width * p.view.height);
+    if (frame->stats)
+        *frame->stats = stats;
+    return status;
+}
+
+/* ---- memory -------------------------------------------------------------------------------------------------------- */
+
+static int outside(int32_t x, int32_t low, int32_t high)
+{
+    return x < low || x > high;
+}
+
+tyn_status tyni_frame_config(tyn_config *c)
+{
+    tyn_config preset;
+    if (tyn_config_preset(&preset, TYN_PRESET_QUALITY, c->width, c->height) != TYN_OK)
+        return TYN_E_CONFIG;
+    c->slices = c->slices ? c->slices : preset.slices;
+    c->samples = c->samples ? c->samples : preset.samples;
+    c->initial_step = c->initial_step ? c->initial_step : preset.initial_step;
+    c->break_threshold = c->break_threshold == 0.0f ? preset.break_threshold : c->break_threshold;
+    c->shadow_size = c->shadow_size ? c->shadow_size : preset.shadow_size;
+    c->steps = c->steps ? c->steps : preset.steps;
+    c->lights = c->lights ? c->lights : preset.lights;
+    c->workers = c->workers ? c->workers : preset.workers;
+    if (outside(c->slices, 8, 65536) || outside(c->samples, 2, 65536) || outside(c->initial_step, 1, 64) ||
+        (c->initial_step & (c->initial_step - 1)) || outside(c->shadow_size, 1, TYN_MAX_SHADOW) || outside(c->steps, 1, 4096) ||
+        outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
+        return TYN_E_CONFIG;
+    if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f))
+        return TYN_E_CONFIG;
+    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_STEPS)
+        return TYN_E_CONFIG;
+    return TYN_OK;
+}
+
+void tyni_frame_place(tyn_context *c, tyni_arena *arena)
+{
+    tyni_arena one = {NULL, 0, 0};
+    size_t samples, words;
+    const tyn_config *g = &c->config;
+    c->samples = tyni_mini(g->samples, tyni_maxi(g->width, g->height));
+    samples = (size_t)c->samples;
+    words = (size_t)tyni_sample_words(c->samples);
+    c->entries = tyni_arena_take(arena, samples * (size_t)g->slices, sizeof *c->entries);
+    c->scales = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->scales);
+    c->light = g->lights > 1 ? tyni_arena_take(arena, (size_t)g->width * (size_t)g->height, 3 * sizeof *c->light) : NULL;
+    c->counts = tyni_arena_take(arena, (size_t)g->workers, sizeof *c->counts);
+    /* the parts of a scratch, in the order of scratch_of */
+    tyni_arena_take(&one, (size_t)g->shadow_size, sizeof(uint16_t));
+    for (int32_t i = 0; i < 3; i++)
+        tyni_arena_take(&one, samples, sizeof(float));
+    for (int32_t i = 0; i < 2; i++)
+        tyni_arena_take(&one, words, sizeof(uint32_t));
+    tyni_arena_take(&one, 1, sizeof(tyn_stats));
+    c->scratch_bytes = one.used;
+    c->scratch = tyni_arena_take(arena, (size_t)g->workers, one.used);
+    c->bytes = arena->used;
+}

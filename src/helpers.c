@@ -1,0 +1,92 @@
+/* helpers.c - public calls that fill in the structs of tyndall.h; they need neither level. */
+#include "tyndall.h"
+
+#include "base.h"
+#include "check.h"
+#include "fit.h"
+#include "num.h"
+#include "vec.h"
+
+static void store(float out[3], tyni_vec3 v)
+{
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
+tyn_status tyn_camera_look(tyn_camera *camera, const float position[3], const float target[3], const float up[3], float fov_y,
+                           float near_depth, float far_depth, int32_t width, int32_t height)
+{
+    tyni_vec3 forward, right;
+    tyn_camera c;
+    float sine, cosine, half;
+    if (!camera || !position || !target || !up)
+        return TYN_E_NULL;
+    if (!tyni_check_finite(position, 3) || !tyni_check_finite(target, 3) || !tyni_check_finite(up, 3) ||
+        !(fov_y > 0.0f && fov_y < TYNI_PI) || width < 1 || height < 1 || width > TYN_MAX_SIZE || height > TYN_MAX_SIZE)
+        return TYN_E_CAMERA;
+    forward = tyni_vec_normalise(tyni_vec_sub(tyni_vec_load(target), tyni_vec_load(position)));
+    right = tyni_vec_cross(forward, tyni_vec_normalise(tyni_vec_load(up)));
+    if (!(tyni_vec_length(right) > 1e-6f))
+        return TYN_E_CAMERA;
+    right = tyni_vec_normalise(right);
+    memcpy(c.position, position, sizeof c.position);
+    store(c.forward, forward);
+    store(c.right, right);
+    store(c.up, tyni_vec_cross(right, forward));
+    tyni_num_sincos(0.5f * fov_y, &sine, &cosine);
+    half = sine / cosine;
+    c.top_edge = half;
+    c.bottom_edge = -half;
+    c.right_edge = half * (float)width / (float)height;
+    c.left_edge = -c.right_edge;
+    c.near_depth = near_depth;
+    c.far_depth = far_depth;
+    if (tyni_check_camera(&c) != TYN_OK)
+        return TYN_E_CAMERA;
+    *camera = c;
+    return TYN_OK;
+}
+
+tyn_status tyn_medium_air(tyn_medium media[2], float scale)
+{
+    static const float rayleigh[3] = {5.8e-6f, 13.5e-6f, 33.1e-6f};
+    if (!media)
+        return TYN_E_NULL;
+    if (!tyni_finite(scale) || scale < 0.0f)
+        return TYN_E_MEDIUM;
+    memset(media, 0, 2 * sizeof *media);
+    for (int32_t c = 0; c < 3; c++) {
+        media[0].scatter[c] = rayleigh[c] * scale;
+        media[1].scatter[c] = 2.0e-5f * scale;
+    }
+    media[0].phase = TYN_PHASE_RAYLEIGH;
+    media[1].phase = TYN_PHASE_HG;
+    media[1].g = 0.76f;
+    return TYN_OK;
+}
+
+tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const float bounds_min[3], const float bounds_max[3])
+{
+    tyn_light bare;
+    if (!light || !camera || !bounds_min != !bounds_max)
+        return TYN_E_NULL;
+    if (tyni_check_camera(camera) != TYN_OK)
+        return TYN_E_CAMERA;
+    bare = *light;
+    bare.shadow.depth = NULL; /* the matrix is what is asked for, whatever it holds now */
+    if (tyni_check_lights(&bare, 1, TYN_MAX_SHADOW) != TYN_OK)
+        return TYN_E_LIGHT;
+    if (bounds_min) {
+        if (!tyni_check_finite(bounds_min, 3) || !tyni_check_finite(bounds_max, 3))
+            return TYN_E_MESH;
+        for (int32_t i = 0; i < 3; i++)
+            if (bounds_min[i] > bounds_max[i])
+                return TYN_E_MESH;
+    }
+    if (light->kind == TYN_LIGHT_DIRECTIONAL)
+        tyni_fit_directional(light->shadow.matrix, light, camera, bounds_min, bounds_max);
+    else
+        tyni_fit_spot(light->shadow.matrix, light, camera, bounds_min, bounds_max);
+    return TYN_OK;
+}

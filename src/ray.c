@@ -1,0 +1,322 @@
+/* ray.c - see ray.h */
+#include "ray.h"
+
+#include "base.h"
+
+/* The sum over lit intervals in the making: switched on and off at rising t. */
+typedef struct meter {
+    const tyni_integral *integral;
+    float *light;
+    int on;
+} meter;
+
+static void meter_begin(meter *m, const tyni_integral *integral, float *light)
+{
+    m->integral = integral;
+    m->light = light;
+    m->on = 0;
+    for (int32_t i = 0; i < integral->count; i++)
+        light[i] = 0.0f;
+}
+
+static void meter_switch(meter *m, int on, float t)
+{
+    float at[3];
+    if (on == m->on)
+        return;
+    tyni_integral_at(m->integral, t, at);
+    for (int32_t i = 0; i < m->integral->count; i++)
+        m->light[i] += on ? -at[i] : at[i];
+    m->on = on;
+}
+
+static void meter_end(meter *m)
+{
+    meter_switch(m, 0, m->integral->t1);
+    for (int32_t i = 0; i < m->integral->count; i++)
+        m->light[i] = tyni_maxf(m->light[i], 0.0f);
+}
+
+/* A form along a ray: c + t * d. */
+typedef struct line {
+    float c, d;
+} line;
+
+static line along(const tyni_form *f, tyni_vec3 v)
+{
+    line l;
+    l.c = f->c;
+    l.d = tyni_vec_dot(f->v, v);
+    return l;
+}
+
+static float line_at(line l, float t)
+{
+    return l.c + t * l.d;
+}
+
+/* Narrows t[0] .. t[1] to where l >= 0. */
+static void line_clip(line l, float t[2])
+{
+    float a = line_at(l, t[0]), b = line_at(l, t[1]);
+    if (a < 0.0f && b < 0.0f)
+        t[1] = t[0] - 1.0f;
+    else if (a < 0.0f)
+        t[0] = t[0] + (t[1] - t[0]) * (a / (a - b));
+    else if (b < 0.0f)
+        t[1] = t[0] + (t[1] - t[0]) * (a / (a - b));
+}
+
+/* A ray on the map: a straight line of texels from (u, v) to (u + du, v + dv), with the parameter s from 0 to 1. Map depth is
+ * linear in s, t is projective. */
+typedef struct track {
+    float u, v, du, dv, z, dz;
+    float t[2], w[2];
+} track;
+
+static int track_begin(track *k, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+{
+    line lu = along(&lamp->u, v), lv = along(&lamp->v, v), lz = along(&lamp->z, v), lw = along(&lamp->w, v), edge;
+    float size = (float)lamp->size, u[2], y[2], z[2];
+    k->t[0] = t0;
+    k->t[1] = t1;
+    edge.c = lw.c - 1e-6f;
+    edge.d = lw.d;
+    line_clip(edge, k->t);
+    line_clip(lu, k->t);
+    line_clip(lv, k->t);
+    edge.c = size * lw.c - lu.c;
+    edge.d = size * lw.d - lu.d;
+    line_clip(edge, k->t);
+    edge.c = size * lw.c - lv.c;
+    edge.d = size * lw.d - lv.d;
+    line_clip(edge, k->t);
+    if (!(k->t[0] < k->t[1]))
+        return 0;
+    for (int32_t i = 0; i < 2; i++) {
+        float w = tyni_maxf(line_at(lw, k->t[i]), 1e-9f);
+        k->w[i] = w;
+        u[i] = tyni_clampf(line_at(lu, k->t[i]) / w, 0.0f, size);
+        y[i] = tyni_clampf(line_at(lv, k->t[i]) / w, 0.0f, size);
+        z[i] = line_at(lz, k->t[i]) / w;
+    }
+    k->u = u[0];
+    k->v = y[0];
+    k->z = z[0];
+    k->du = u[1] - u[0];
+    k->dv = y[1] - y[0];
+    k->dz = z[1] - z[0];
+    return 1;
+}
+
+static float track_t(const track *k, float s)
+{
+    float a = (1.0f - s) * k->w[1], b = s * k->w[0];
+    return (a * k->t[0] + b * k->t[1]) / (a + b);
+}
+
+/* One axis of the walk: the texel, where in s the next border is, and how far apart borders are. */
+typedef struct axis {
+    int32_t texel, step;
+    float next, pitch;
+} axis;
+
+static axis axis_begin(float x, float dx, int32_t size)
+{
+    axis a;
+    a.texel = tyni_clampi((int32_t)x, 0, size - 1);
+    a.step = dx >= 0.0f ? 1 : -1;
+    if (tyni_absf(dx) > 1e-6f) {
+        a.pitch = 1.0f / tyni_absf(dx);
+        a.next = tyni_maxf((dx >= 0.0f ? (float)a.texel + 1.0f - x : x - (float)a.texel) * a.pitch, 0.0f);
+    } else {
+        a.pitch = 2.0f;
+        a.next = 2.0f;
+    }
+    return a;
+}
+
+static void walk_texels(const tyni_lamp *lamp, const track *k, meter *m)
+{
+    axis u = axis_begin(k->u, k->du, lamp->size), v = axis_begin(k->v, k->dv, lamp->size);
+    float s = 0.0f, za = k->z;
+    /* every step leaves a texel for good: at most 2 * size of them, whatever rounding does */
+    for (int32_t left = 2 * lamp->size + 2; left > 0; left--) {
+        float depth = lamp->depth[(ptrdiff_t)v.texel * lamp->size + u.texel];
+        float end = tyni_minf(tyni_minf(u.next, v.next), 1.0f), zb = k->z + end * k->dz;
+        int open = !(depth > 0.0f), lit_a, lit_b;
+        depth = tyni_minf(depth, 1.0f);
+        lit_a = open || za >= depth;
+        lit_b = open || zb >= depth;
+        if (lit_a != m->on)
+            meter_switch(m, lit_a, track_t(k, s));
+        if (lit_b != lit_a)
+            meter_switch(m, lit_b, track_t(k, s + (end - s) * ((depth - za) / (zb - za))));
+        if (end >= 1.0f)
+            return;
+        if (u.next <= v.next) {
+            u.texel += u.step;
+            u.next += u.pitch;
+        } else {
+            v.texel += v.step;
+            v.next += v.pitch;
+        }
+        if ((uint32_t)u.texel >= (uint32_t)lamp->size || (uint32_t)v.texel >= (uint32_t)lamp->size)
+            return;
+        s = end;
+        za = zb;
+    }
+}
+
+void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, float *light)
+{
+    int outside = lamp->kind == TYN_LIGHT_DIRECTIONAL || !lamp->depth;
+    meter m;
+    track k;
+    meter_begin(&m, it, light);
+    if (!(it->t0 < it->t1))
+        return;
+    meter_switch(&m, outside, it->t0);
+    if (lamp->depth && track_begin(&k, lamp, v, it->t0, it->t1)) {
+        walk_texels(lamp, &k, &m);
+        meter_switch(&m, outside, k.t[1]);
+    }
+    meter_end(&m);
+}
+
+/* Visibility of columns i .. i + 31 of the row; those past the end repeat the last. */
+static uint32_t visibility(const tyni_row *row, int32_t i, uint32_t position)
+{
+    uint32_t bits = 0;
+    int32_t n = tyni_mini(32, row->count - i);
+    for (int32_t b = 0; b < n; b++)
+        bits |= (uint32_t)(position < row->threshold[i + b]) << b;
+    return n < 32 && bits >> (n - 1) ? bits | 0xffffffffu << n : bits;
+}
+
+/* t of a column border. */
+static float border_t(line r, line w, float column)
+{
+    return (column * w.c - r.c) / (r.d - column * w.d);
+}
+
+static void row_words(const tyni_row *row, uint32_t position, line r, line w, float from, float to, meter *m)
+{
+    int32_t first = tyni_clampi((int32_t)from, 0, row->count - 1),
+            last = tyni_clampi(tyni_ceili(to) - 1, first, row->count - 1);
+    for (int32_t i = first & ~31; i <= last; i += 32) {
+        uint32_t bits = visibility(row, i, position), changes;
+        if (i < first) { /* columns before the ray look like its first */
+            uint32_t before = (1u << (first - i)) - 1u;
+            bits = bits >> (first - i) & 1u ? bits | before : bits & ~before;
+        }
+        if (last - i < 31) { /* and those after it like its last */
+            uint32_t after = 0xffffffffu << (last - i) << 1;
+            bits = bits >> (last - i) & 1u ? bits | after : bits & ~after;
+        }
+        /* the first column of a word changes at its border, or where the ray comes in */
+        if ((int)(bits & 1u) != m->on)
+            meter_switch(m, (int)(bits & 1u), i <= first ? border_t(r, w, tyni_maxf(from, 0.0f)) : border_t(r, w, (float)i));
+        changes = bits ^ (bits << 1 | (bits & 1u));
+        for (; changes; changes &= changes - 1) {
+            int32_t b = tyni_ctz32(changes);
+            meter_switch(m, (int)(bits >> b & 1u), border_t(r, w, (float)(i + b)));
+        }
+    }
+}
+
+/* Column coordinates of the ray's ends. */
+static void row_span(line r, line w, const tyni_integral *it, float *from, float *to)
+{
+    *from = line_at(r, it->t0) / tyni_maxf(line_at(w, it->t0), 1e-9f);
+    *to = line_at(r, it->t1) / tyni_maxf(line_at(w, it->t1), 1e-9f);
+}
+
+void tyni_ray_row(const tyni_row *row, uint32_t position, const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v,
+                  float *light)
+{
+    int outside = lamp->kind == TYN_LIGHT_DIRECTIONAL || !lamp->depth;
+    meter m;
+    meter_begin(&m, it, light);
+    if (!(it->t0 < it->t1))
+        return;
+    meter_switch(&m, outside, it->t0);
+    if (row->count > 0) {
+        line r = along(&row->r, v), w = along(&row->w, v);
+        float from, to, end = (float)row->count;
+        row_span(r, w, it, &from, &to);
+        if (from < end && to > 0.0f && from < to) {
+            row_words(row, position, r, w, from, tyni_minf(to, end), &m);
+            if (to > end)
+                meter_switch(&m, outside, border_t(r, w, end));
+        }
+    }
+    meter_end(&m);
+}
+
+int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, tyni_vec3 v)
+{
+    line r = along(&row->r, v), w = along(&row->w, v);
+    float from, to, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
+    if (row->count < 1)
+        return 0;
+    row_span(r, w, it, &from, &to);
+    /* a column's share of the light, at most: 1 / columns in thin air, its optical depth in thick */
+    return tyni_maxf(1.0f, depth) > 0.05f * (to - from);
+}
+
+static int point_lit(const tyni_lamp *lamp, line u, line v, line z, line w, float t)
+{
+    float wt = line_at(w, t), depth, x, y;
+    int outside = lamp->kind == TYN_LIGHT_DIRECTIONAL;
+    if (!lamp->depth)
+        return 1;
+    if (!(wt > 0.0f))
+        return outside;
+    x = line_at(u, t) / wt;
+    y = line_at(v, t) / wt;
+    if (!(x >= 0.0f && y >= 0.0f && x < (float)lamp->size && y < (float)lamp->size))
+        return outside;
+    depth = lamp->depth[(ptrdiff_t)(int32_t)y * lamp->size + (int32_t)x];
+    return !(depth > 0.0f) || line_at(z, t) / wt >= tyni_minf(depth, 1.0f);
+}
+
+void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float t0, float t1, int32_t steps,
+                    float light[3])
+{
+    line lu = along(&lamp->u, v), lv = along(&lamp->v, v), lz = along(&lamp->z, v), lw = along(&lamp->w, v);
+    float dt = (t1 - t0) / (float)steps, density[3];
+    light[0] = light[1] = light[2] = 0.0f;
+    if (!(dt > 0.0f))
+        return;
+    for (int32_t i = 0; i < steps; i++) {
+        float t = t0 + ((float)i + 0.5f) * dt;
+        if (!point_lit(lamp, lu, lv, lz, lw, t))
+            continue;
+        tyni_integral_density(medium, lamp, v, t, density);
+        for (int32_t c = 0; c < 3; c++)
+            light[c] += density[c] * dt;
+    }
+}
+
+void tyni_ray_pixel(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float s, int32_t steps, float light[3])
+{
+    static const int32_t channels[3] = {0, 1, 2};
+    float t0 = 0.0f, t1 = s, mix[3];
+    tyni_integral it;
+    light[0] = light[1] = light[2] = 0.0f;
+    if (!tyni_view_clip_cone(lamp, v, &t0, &t1))
+        return;
+    if (steps) {
+        tyni_ray_steps(lamp, medium, v, t0, t1, steps, light);
+    } else {
+        tyni_integral_begin(&it, medium, lamp, v, t0, t1, channels, 3);
+        tyni_ray_walk(lamp, &it, v, light);
+    }
+    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
+        tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v, lamp->to_light), -1.0f, 1.0f), mix);
+    else
+        mix[0] = mix[1] = mix[2] = 1.0f;
+    for (int32_t c = 0; c < 3; c++)
+        light[c] *= mix[c] * lamp->colour[c];
+}

@@ -1,0 +1,93 @@
+/* sample.c - see sample.h */
+#include "sample.h"
+
+#include "base.h"
+#include "check.h"
+
+void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slice *slice, const tyni_view *view,
+                        const tyn_image *image)
+{
+    ptrdiff_t stride = tyni_image_stride(image);
+    int32_t last_p = (slice->along_y ? image->height : image->width) - 1;
+    int32_t last_m = (slice->along_y ? image->width : image->height) - 1;
+    ptrdiff_t along = slice->along_y ? stride : (ptrdiff_t)sizeof(float);
+    ptrdiff_t across = slice->along_y ? (ptrdiff_t)sizeof(float) : stride;
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        int32_t p = tyni_mini(j * slices->stride, last_p);
+        float m = slice->m0 + slice->slope * tyni_slice_p(slices, j);
+        int32_t i = (int32_t)tyni_clampf(m, 0.0f, (float)last_m);
+        const uint8_t *pixel = (const uint8_t *)image->pixels + along * p + across * i;
+        depth[j] = tyni_view_depth(view, *(const float *)(const void *)pixel);
+    }
+}
+
+int32_t tyni_sample_breaks(uint32_t *breaks, const float *depth, int32_t first, int32_t last, float threshold)
+{
+    int32_t count = 0;
+    memset(breaks, 0, sizeof *breaks * (size_t)tyni_sample_words(last + 1));
+    for (int32_t j = first; j < last; j++) {
+        float a = depth[j], b = depth[j + 1];
+        int jump = tyni_absf(a - b) > threshold * tyni_minf(a, b);
+        breaks[j >> 5] |= (uint32_t)jump << (j & 31);
+        count += jump;
+    }
+    return count;
+}
+
+static void set(uint32_t *words, int32_t j)
+{
+    words[j >> 5] |= 1u << (j & 31);
+}
+
+int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slices *slices, const tyni_slice *slice,
+                         int32_t step)
+{
+    int32_t words = tyni_sample_words(slice->last + 1), count = 0, dense, from, to;
+    uint32_t carry = 0;
+    /* a break bit stands for both of its sides */
+    for (int32_t w = 0; w < words; w++) {
+        rays[w] = breaks[w] | breaks[w] << 1 | carry;
+        carry = breaks[w] >> 31;
+    }
+    for (int32_t j = (slice->first + step - 1) / step * step; j <= slice->last; j += step)
+        set(rays, j);
+    /* near the epipole light varies faster: IVB section 6.2. Four initial steps on either side of it. */
+    dense = tyni_maxi(step / 4, 1);
+    from = (int32_t)(tyni_clampf(slice->epipole, -1e6f, 1e6f) / (float)slices->stride);
+    to = tyni_mini(from + 4 * step, slice->last);
+    from = tyni_maxi(from - 4 * step, slice->first);
+    for (int32_t j = (from + dense - 1) / dense * dense; j <= to; j += dense)
+        set(rays, j);
+    set(rays, slice->first);
+    set(rays, slice->last);
+    for (int32_t w = 0; w < words; w++)
+        for (uint32_t bits = rays[w]; bits; bits &= bits - 1)
+            count++;
+    return count;
+}
+
+int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last)
+{
+    int32_t w = j >> 5, end = last >> 5;
+    uint32_t bits;
+    if (j > last)
+        return last + 1;
+    bits = words[w] & (0xffffffffu << (j & 31));
+    while (!bits && w < end)
+        bits = words[++w];
+    if (!bits)
+        return last + 1;
+    return tyni_mini(w * 32 + tyni_ctz32(bits), last + 1);
+}
+
+void tyni_sample_interpolate(float *value, const uint32_t *rays, int32_t first, int32_t last)
+{
+    int32_t a = first;
+    while (a < last) {
+        int32_t b = tyni_sample_next(rays, a + 1, last);
+        float step = (value[b] - value[a]) / (float)(b - a);
+        for (int32_t j = a + 1; j < b; j++)
+            value[j] = value[a] + step * (float)(j - a);
+        a = b;
+    }
+}

@@ -1,0 +1,40 @@
+/* sample.h - samples along a slice's line (ED10 section 4.2, IVB section 6.2): depth, break bits, ray samples, and the two
+ * sources of every other sample. Bits are packed 32 to a word; bit j of a line is bit j % 32 of word j / 32. */
+#ifndef TYNI_SAMPLE_H
+#define TYNI_SAMPLE_H
+
+#include "slice.h"
+#include "view.h"
+
+#include "base.h"
+
+static inline int32_t tyni_sample_words(int32_t samples)
+{
+    return (samples + 31) / 32;
+}
+static inline int tyni_sample_bit(const uint32_t *words, int32_t j)
+{
+    return (int)(words[j >> 5] >> (j & 31) & 1u);
+}
+
+/* depth[j] for first .. last: view-space depth of the pixel under each sample (the nearest on the screen), 0 .. far. */
+void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slice *slice, const tyni_view *view,
+                        const tyn_image *image);
+
+/* Sets bit j where depth jumps between j and j + 1 by more than `threshold` of the nearer one; clears all others. Returns how
+ * many. Samples off the screen are no part of first .. last, so the ends of a line need no breaks. */
+int32_t tyni_sample_breaks(uint32_t *breaks, const float *depth, int32_t first, int32_t last, float threshold);
+
+/* Sets the bits of the ray samples: every `step`th, every quarter of that near the epipole, both sides of every break, the
+ * first and the last. Returns how many. */
+int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slices *slices, const tyni_slice *slice,
+                         int32_t step);
+
+/* The next set bit at or after j, at most last; last + 1 if there is none. */
+int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last);
+
+/* Fills the samples between ray samples by linear interpolation of their sources, which are the ray samples on either side: a
+ * break has rays on both sides, so that no pair of sources ever spans one. */
+void tyni_sample_interpolate(float *value, const uint32_t *rays, int32_t first, int32_t last);
+
+#endif

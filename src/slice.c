@@ -1,0 +1,168 @@
+/* slice.c - see slice.h */
+#include "slice.h"
+
+#include "base.h"
+
+int32_t tyni_slice_samples(int32_t width, int32_t height, int32_t stride)
+{
+    /* sample j is at pixel j * stride; the last must not lie before the last pixel */
+    return (tyni_maxi(width, height) - 1 + stride - 1) / stride + 1;
+}
+
+int32_t tyni_slice_stride(int32_t width, int32_t height, int32_t samples)
+{
+    int32_t stride = 1;
+    while (tyni_slice_samples(width, height, stride) > samples)
+        stride *= 2;
+    return stride;
+}
+
+/* Keeps the part of a convex polygon where a * x + b * y + c >= 0. Room for one more corner than n. */
+static int32_t clip(float (*corner)[2], int32_t n, float a, float b, float c)
+{
+    float in[8][2];
+    int32_t m = 0;
+    memcpy(in, corner, sizeof in[0] * (size_t)n);
+    for (int32_t i = 0; i < n; i++) {
+        const float *p = in[i], *q = in[i + 1 < n ? i + 1 : 0];
+        float fp = a * p[0] + b * p[1] + c, fq = a * q[0] + b * q[1] + c;
+        if (fp >= 0.0f) {
+            corner[m][0] = p[0];
+            corner[m++][1] = p[1];
+        }
+        if ((fp >= 0.0f) != (fq >= 0.0f)) {
+            float f = fp / (fp - fq);
+            corner[m][0] = p[0] + f * (q[0] - p[0]);
+            corner[m++][1] = p[1] + f * (q[1] - p[1]);
+        }
+    }
+    return m;
+}
+
+/* The range of border points that lines through the sector's part of the screen reach; its length, 0 for an empty sector. */
+static float border_range(tyni_sector *s, const tyni_slices *g, float sign)
+{
+    float width = (float)g->width, height = (float)g->height, low = 1e30f, high = -1e30f;
+    float corner[8][2] = {{0.0f, 0.0f}, {width, 0.0f}, {width, height}, {0.0f, height}};
+    float along = s->along_y ? g->ey : g->ex, across = s->along_y ? g->ex : g->ey;
+    int32_t n = 4, p = s->along_y, m = !s->along_y;
+    /* sign * dp >= |dm| with dp = p * ew - along, dm = m * ew - across */
+    for (int32_t side = -1; side <= 1 && n; side += 2) {
+        float fp = sign * g->ew, fm = (float)side * g->ew, c = -sign * along - (float)side * across;
+        n = clip(corner, n, p ? fm : fp, p ? fp : fm, c);
+    }
+    for (int32_t i = 0; i < n; i++) {
+        float dp = corner[i][p] * g->ew - along, dm = corner[i][m] * g->ew - across, at;
+        if (sign * dp < 1e-3f)
+            continue; /* the epipole itself */
+        at = corner[i][m] + dm / dp * (s->border - corner[i][p]);
+        low = tyni_minf(low, at);
+        high = tyni_maxf(high, at);
+    }
+    s->first = low;
+    return high - low > 0.01f ? high - low : 0.0f;
+}
+
+void tyni_slice_layout(tyni_slices *g, const tyni_lamp *lamp, int32_t width, int32_t height, int32_t limit, int32_t stride)
+{
+    float length[4], sum = 0.0f, size;
+    int32_t used = 0, spare;
+    g->width = width;
+    g->height = height;
+    g->stride = stride;
+    g->samples = tyni_slice_samples(width, height, stride);
+    size = tyni_maxf(lamp->ew, tyni_maxf(tyni_absf(lamp->ex), tyni_absf(lamp->ey)) / (float)(width + height));
+    size = size > 0.0f ? 1.0f / size : 0.0f;
+    g->ex = lamp->ex * size;
+    g->ey = lamp->ey * size;
+    g->ew = lamp->ew * size;
+    for (int32_t i = 0; i < 4; i++) {
+        tyni_sector *s = &g->sectors[i];
+        s->along_y = i >> 1;
+        s->border = i & 1 ? 0.0f : (float)(s->along_y ? height : width);
+        length[i] = border_range(s, g, i & 1 ? -1.0f : 1.0f);
+        sum += length[i];
+        used += length[i] > 0.0f;
+    }
+    spare = limit - 2 * used;
+    g->count = 0;
+    for (int32_t i = 0; i < 4; i++) {
+        tyni_sector *s = &g->sectors[i];
+        s->start = g->count;
+        s->count = 0;
+        if (length[i] <= 0.0f)
+            continue;
+        /* in proportion to the border, but never denser than one per pixel there */
+        s->count = 2 + (int32_t)((float)spare * 0.9999f * length[i] / sum);
+        s->count = tyni_mini(s->count, tyni_ceili(length[i]) + 1);
+        s->spacing = length[i] / (float)(s->count - 1);
+        g->count += s->count;
+    }
+}
+
+/* Narrows first .. last to the samples with |m(p) - middle| <= half. */
+static void trim(tyni_slice *s, const tyni_slices *g, float low, float high)
+{
+    float stride = (float)g->stride, a, b, swap;
+    if (tyni_absf(s->slope) < 1e-6f) {
+        if (s->m0 < low || s->m0 > high)
+            s->last = s->first - 1;
+        return;
+    }
+    a = ((low - s->m0) / s->slope - 0.5f) / stride;
+    b = ((high - s->m0) / s->slope - 0.5f) / stride;
+    if (a > b) {
+        swap = a;
+        a = b;
+        b = swap;
+    }
+    s->first = tyni_maxi(s->first, tyni_ceili(tyni_clampf(a, -1.0f, 65536.0f)));
+    s->last = tyni_mini(s->last, tyni_floori(tyni_clampf(b, -1.0f, 65536.0f)));
+}
+
+void tyni_slice_line(tyni_slice *s, const tyni_slices *g, const tyni_lamp *lamp, const tyni_view *view, int32_t index)
+{
+    const tyni_sector *sector = g->sectors;
+    float along, across, mb, margin, at;
+    int32_t size;
+    tyni_vec3 far_end;
+    while (index >= sector->start + sector->count)
+        sector++;
+    s->along_y = sector->along_y;
+    along = s->along_y ? g->ey : g->ex;
+    across = s->along_y ? g->ex : g->ey;
+    mb = sector->first + (float)(index - sector->start) * sector->spacing;
+    s->slope = tyni_clampf((across - g->ew * mb) / (along - g->ew * sector->border), -1.001f, 1.001f);
+    s->m0 = mb - s->slope * sector->border;
+    s->a = tyni_vec_mad(view->origin, s->m0, s->along_y ? view->dx : view->dy);
+    s->b = s->along_y ? tyni_vec_mad(view->dy, s->slope, view->dx) : tyni_vec_mad(view->dx, s->slope, view->dy);
+    far_end = tyni_vec_mad(s->a, sector->border, s->b);
+    s->ey = lamp->to_light;
+    s->ex = tyni_vec_normalise(tyni_vec_mad(far_end, -tyni_vec_dot(far_end, s->ey), s->ey));
+    /* the samples: on the screen, on this side of the epipole */
+    size = s->along_y ? g->height : g->width;
+    s->first = 0;
+    s->last = (size - 1 + g->stride - 1) / g->stride;
+    margin = sector->spacing + 0.5f;
+    trim(s, g, -margin, (float)(s->along_y ? g->width : g->height) + margin);
+    at = g->ew > 0.0f ? tyni_clampf(along / g->ew, -1e9f, 1e9f) : sector->border > 0.0f ? -1e9f : 1e9f;
+    s->epipole = at;
+    at = (tyni_clampf(at, -1e6f, 1e6f) - 0.5f) / (float)g->stride;
+    if (sector->border > 0.0f)
+        s->first = tyni_maxi(s->first, tyni_floori(at) + 1);
+    else
+        s->last = tyni_mini(s->last, tyni_ceili(at) - 1);
+}
+
+const tyni_sector *tyni_slice_find(const tyni_slices *g, float x, float y, float *coordinate)
+{
+    float dx = x * g->ew - g->ex, dy = y * g->ew - g->ey, k;
+    int32_t along_y = tyni_absf(dy) > tyni_absf(dx);
+    const tyni_sector *s = &g->sectors[2 * along_y + ((along_y ? dy : dx) < 0.0f)];
+    if (!s->count) /* the epipole's own pixel, or a corner lost to rounding: any sector will do, its samples are weighed */
+        for (s = g->sectors; !s->count && s < g->sectors + 3; s++)
+            ;
+    k = s->along_y ? x + dx / dy * (s->border - y) : y + dy / dx * (s->border - x);
+    *coordinate = tyni_clampf((k - s->first) / s->spacing, 0.0f, (float)(s->count - 1));
+    return s;
+}

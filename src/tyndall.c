@@ -1,0 +1,160 @@
+/* tyndall.c - the public calls of the post process: check arguments, call inward. The rasterizer's are in raster/api.c. */
+#include "tyndall.h"
+
+#include "base.h"
+#include "arena.h"
+#include "check.h"
+#include "composite.h"
+#include "frame.h"
+#include "jobs.h"
+
+/* A context takes as much room as TYN_MEMORY says. */
+typedef char context_fits[sizeof(struct tyn_context) <= TYN_CONTEXT_BYTES ? 1 : -1];
+typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
+
+tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t width, int32_t height)
+{
+    static const struct {
+        int32_t divisor, most, samples, step, shadow;
+    } table[] = {{8, 256, 2, 16, 256}, {4, 512, 2, 16, 1024}, {1, 1024, 1, 16, 2048}, {1, 4096, 1, 4, 4096}};
+    int32_t longer = tyni_maxi(width, height);
+    if (!config)
+        return TYN_E_NULL;
+    if (width < 1 || height < 1 || width > TYN_MAX_SIZE || height > TYN_MAX_SIZE || (uint32_t)preset > TYN_PRESET_REFERENCE)
+        return TYN_E_CONFIG;
+    memset(config, 0, sizeof *config);
+    config->width = width;
+    config->height = height;
+    config->slices = tyni_clampi((width + height) / table[preset].divisor, 16, table[preset].most);
+    config->samples = tyni_maxi((longer + table[preset].samples - 1) / table[preset].samples, 2);
+    config->initial_step = table[preset].step;
+    config->break_threshold = 0.06f;
+    config->shadow_size = table[preset].shadow;
+    config->steps = 150;
+    config->lights = 1;
+    config->workers = 1;
+    return TYN_OK;
+}
+
+static void place(tyn_context *context, tyni_arena *arena)
+{
+    tyni_arena_take(arena, 1, TYN_CONTEXT_BYTES);
+    tyni_frame_place(context, arena);
+}
+
+tyn_status tyn_measure(const tyn_config *config, size_t *bytes)
+{
+    tyni_arena arena = {NULL, 0, 0};
+    struct tyn_context context;
+    if (!config || !bytes)
+        return TYN_E_NULL;
+    memset(&context, 0, sizeof context);
+    context.config = *config;
+    if (tyni_frame_config(&context.config) != TYN_OK)
+        return TYN_E_CONFIG;
+    place(&context, &arena);
+    if (arena.overflow)
+        return TYN_E_CONFIG;
+    *bytes = arena.used;
+    return TYN_OK;
+}
+
+tyn_status tyn_init(tyn_context **context, const tyn_config *config, void *memory, size_t bytes)
+{
+    tyni_arena arena = {NULL, 0, 0};
+    tyn_context *c = memory;
+    tyn_config own;
+    size_t need;
+    tyn_status status;
+    if (!context || !config || !memory)
+        return TYN_E_NULL;
+    status = tyn_measure(config, &need);
+    if (status != TYN_OK)
+        return status;
+    if ((uintptr_t)memory % TYN_ALIGNMENT)
+        return TYN_E_ALIGN;
+    if (bytes < need)
+        return TYN_E_MEMORY;
+    own = *config;
+    tyni_frame_config(&own);
+    memset(c, 0, sizeof *c);
+    c->config = own;
+    arena.block = memory;
+    place(c, &arena);
+    *context = c;
+    return TYN_OK;
+}
+
+/* Image of the frame's size, or none at all. */
+static tyn_status check_optional(const tyn_image *image, uint32_t formats, const tyn_image *depth)
+{
+    tyn_status status;
+    if (!image->pixels)
+        return TYN_OK;
+    status = tyni_check_image(image, formats);
+    if (status == TYN_OK && (image->width != depth->width || image->height != depth->height))
+        return TYN_E_IMAGE;
+    return status;
+}
+
+static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
+{
+    const tyn_config *c = &context->config;
+    tyn_status status = tyni_check_image(&f->depth, TYNI_FORMAT_BIT(TYN_DEPTH_F32));
+    if (status == TYN_OK && (f->depth.width > c->width || f->depth.height > c->height))
+        status = TYN_E_LIMIT;
+    if (status == TYN_OK)
+        status = check_optional(&f->colour, TYNI_COLOUR_FORMATS, &f->depth);
+    if (status == TYN_OK)
+        status = check_optional(&f->target, TYNI_COLOUR_FORMATS, &f->depth);
+    if (status == TYN_OK)
+        status = check_optional(&f->scatter, TYNI_FORMAT_BIT(TYN_RGB_F32), &f->depth);
+    if (status == TYN_OK)
+        status = tyni_check_camera(&f->camera);
+    if (status == TYN_OK && f->light_count > c->lights)
+        status = TYN_E_LIMIT;
+    if (status == TYN_OK)
+        status = tyni_check_lights(f->lights, f->light_count, c->shadow_size);
+    if (status == TYN_OK)
+        status = tyni_check_media(f->media, f->medium_count);
+    if (status == TYN_OK)
+        status = tyni_check_display(&f->display);
+    if (status == TYN_OK && (uint32_t)f->debug > (uint32_t)TYN_DEBUG_OUTSIDE)
+        status = TYN_E_DISPLAY;
+    if (status == TYN_OK)
+        status = tyni_jobs_check(f->executor, c->workers);
+    return status;
+}
+
+tyn_status tyn_render(tyn_context *context, const tyn_frame *frame)
+{
+    tyn_status status;
+    if (!context || !frame)
+        return TYN_E_NULL;
+    status = check_frame(context, frame);
+    return status == TYN_OK ? tyni_frame_render(context, frame) : status;
+}
+
+tyn_status tyn_encode(const tyn_image *linear, const tyn_display *display, const tyn_image *target)
+{
+    tyn_status status;
+    float rgb[3 * 32];
+    if (!linear || !display || !target)
+        return TYN_E_NULL;
+    status = tyni_check_image(linear, TYNI_FORMAT_BIT(TYN_RGB_F32));
+    if (status == TYN_OK)
+        status = tyni_check_image(target, TYNI_COLOUR_FORMATS);
+    if (status == TYN_OK && (linear->width != target->width || linear->height != target->height))
+        status = TYN_E_IMAGE;
+    if (status == TYN_OK)
+        status = tyni_check_display(display);
+    if (status != TYN_OK)
+        return status;
+    for (int32_t y = 0; y < target->height; y++)
+        for (int32_t x = 0; x < target->width; x += 32) {
+            int32_t count = tyni_mini(32, target->width - x);
+            tyni_composite_read(linear, x, y, count, rgb);
+            tyni_composite_write(target, display, x, y, count, rgb);
+        }
+    return TYN_OK;
+}
