@@ -349,6 +349,12 @@ typedef struct tyn_raster_config {
 
 typedef struct tyn_raster tyn_raster;
 
+/* What tyn_raster_measure gives, as a constant expression for a static block. Arguments as in tyn_raster_config, no zeros. */
+#define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
+    ((size_t)0 * (width) * (height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +                       \
+     TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
+#define TYN_RASTER_BYTES 3200
+
 /* As tyn_measure and tyn_init. */
 tyn_status tyn_raster_measure(const tyn_raster_config *config, size_t *bytes);
 tyn_status tyn_raster_init(tyn_raster **raster, const tyn_raster_config *config, void *memory, size_t bytes);

@@ -75,40 +75,111 @@ static void advance(edge *e)
     }
 }
 
-static void span_seen(brush *b, int32_t y, int32_t from, int32_t to)
+/* A row's span, ready for the loops below: all of them are flat over x and calculate each pixel from scratch, so that neither
+ * the span's ends nor the order of bands change a value. */
+typedef struct span {
+    float *depth;
+    uint8_t *colour; /* NULL: not wanted */
+    float row, dx, low, high;
+    int32_t y, from, to, x0;
+} span;
+
+static float value_at(const span *s, int32_t x)
 {
-    const tyni_raster_pass *pass = b->pass;
-    const tyni_raster_piece *piece = b->piece;
-    float *depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
-    uint8_t *colour = pass->kind == TYNI_RASTER_SEEN ? pass->colour + y * pass->colour_stride : NULL;
-    const float row = piece->plane.dy * (float)(y - piece->plane.y0) + piece->plane.value;
-    const uint32_t seen[2] = {piece->mesh, piece->triangle};
-    for (int32_t x = from; x < to; x++) {
-        const float value = piece->plane.dx * (float)(x - piece->plane.x0) + row;
-        const float z = 1.0f / tyni_clampf(value, piece->low, piece->high);
-        if (z < depth[x] && z >= pass->nearest && (!b->cutout || tyni_raster_solid(b->cutout, x, y))) {
-            depth[x] = z;
-            b->pixels++;
-            if (colour)
-                memcpy(colour + 12 * (ptrdiff_t)x, seen, sizeof seen);
-        }
-    }
+    return tyni_clampf(s->dx * (float)(x - s->x0) + s->row, s->low, s->high);
 }
 
-static void span_shadow(brush *b, int32_t y, int32_t from, int32_t to)
+static int32_t span_shadow(const span *s)
+{
+    float *depth = s->depth;
+    int32_t passed = 0;
+    for (int32_t x = s->from; x < s->to; x++) {
+        const float z = tyni_minf(value_at(s, x), 1.0f), old = depth[x];
+        const int pass = z > old;
+        depth[x] = pass ? z : old;
+        passed += pass;
+    }
+    return passed;
+}
+
+static int32_t span_depth(const span *s, float nearest)
+{
+    float *depth = s->depth;
+    int32_t passed = 0;
+    for (int32_t x = s->from; x < s->to; x++) {
+        const float z = 1.0f / value_at(s, x), old = depth[x];
+        const int pass = (z < old) & (z >= nearest);
+        depth[x] = pass ? z : old;
+        passed += pass;
+    }
+    return passed;
+}
+
+static int32_t span_seen(const span *s, float nearest, const tyni_raster_piece *piece)
+{
+    const uint32_t seen[2] = {piece->mesh, piece->triangle};
+    float *depth = s->depth;
+    int32_t passed = 0;
+    for (int32_t x = s->from; x < s->to; x++) {
+        const float z = 1.0f / value_at(s, x);
+        if (z < depth[x] && z >= nearest) {
+            depth[x] = z;
+            memcpy(s->colour + 12 * (ptrdiff_t)x, seen, sizeof seen);
+            passed++;
+        }
+    }
+    return passed;
+}
+
+/* With a mask, asked last: it costs most. */
+static int32_t span_cutout(const span *s, const brush *b)
+{
+    const tyni_raster_pass *pass = b->pass;
+    const uint32_t seen[2] = {b->piece->mesh, b->piece->triangle};
+    int32_t passed = 0;
+    for (int32_t x = s->from; x < s->to; x++) {
+        const float value = value_at(s, x);
+        if (pass->kind == TYNI_RASTER_SHADOW) {
+            const float z = tyni_minf(value, 1.0f);
+            if (!(z > s->depth[x]) || !tyni_raster_solid(b->cutout, x, s->y))
+                continue;
+            s->depth[x] = z;
+        } else {
+            const float z = 1.0f / value;
+            if (!(z < s->depth[x] && z >= pass->nearest) || !tyni_raster_solid(b->cutout, x, s->y))
+                continue;
+            s->depth[x] = z;
+            if (s->colour)
+                memcpy(s->colour + 12 * (ptrdiff_t)x, seen, sizeof seen);
+        }
+        passed++;
+    }
+    return passed;
+}
+
+static void fill_span(brush *b, int32_t y, int32_t from, int32_t to)
 {
     const tyni_raster_pass *pass = b->pass;
     const tyni_raster_piece *piece = b->piece;
-    float *depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
-    const float row = piece->plane.dy * (float)(y - piece->plane.y0) + piece->plane.value;
-    for (int32_t x = from; x < to; x++) {
-        const float value = piece->plane.dx * (float)(x - piece->plane.x0) + row;
-        const float z = tyni_minf(tyni_clampf(value, piece->low, piece->high), 1.0f);
-        if (z > depth[x] && (!b->cutout || tyni_raster_solid(b->cutout, x, y))) {
-            depth[x] = z;
-            b->pixels++;
-        }
-    }
+    span s;
+    s.depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
+    s.colour = pass->kind == TYNI_RASTER_SEEN ? pass->colour + y * pass->colour_stride : NULL;
+    s.row = piece->plane.dy * (float)(y - piece->plane.y0) + piece->plane.value;
+    s.dx = piece->plane.dx;
+    s.low = piece->low;
+    s.high = piece->high;
+    s.y = y;
+    s.from = from;
+    s.to = to;
+    s.x0 = piece->plane.x0;
+    if (b->cutout)
+        b->pixels += span_cutout(&s, b);
+    else if (pass->kind == TYNI_RASTER_SHADOW)
+        b->pixels += span_shadow(&s);
+    else if (s.colour)
+        b->pixels += span_seen(&s, pass->nearest, piece);
+    else
+        b->pixels += span_depth(&s, pass->nearest);
 }
 
 /* Rows y .. end - 1 between two edges. */
@@ -122,10 +193,7 @@ static int fill_rows(brush *b, edge *left, edge *right, int32_t y, int32_t end)
             covered = 1;
             if (b->probe)
                 return 1;
-            if (b->pass->kind == TYNI_RASTER_SHADOW)
-                span_shadow(b, y, from, to);
-            else
-                span_seen(b, y, from, to);
+            fill_span(b, y, from, to);
         }
         advance(left);
         advance(right);

@@ -4,11 +4,10 @@
 #include "check.h"
 #include "vec.h"
 
-/* The part behind the point, 0 <= x < 1 but for rounding to 1; what is not finite gives 0. */
+/* The part behind the point, 0 <= x <= 1 (1 by rounding alone). Numbers too large to have one, and what is not finite, give 0. */
 static float fraction(float x)
 {
-    const float f = x - floorf(x);
-    return f > 0.0f ? f : 0.0f;
+    return tyni_absf(x) < 8388608.0f ? x - (float)tyni_floori(x) : 0.0f;
 }
 
 static void load(const tyn_image *texture, const uint8_t *row, int32_t x, float rgb[3])
