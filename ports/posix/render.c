@@ -105,6 +105,7 @@ static int make_raster(work *w)
     status = tyn_raster_measure(&c, &bytes);
     if (status != TYN_OK)
         return fail(w, 0, "rasterizer", status);
+    w->out->raster_bytes = bytes;
     block = aligned(bytes, &w->raster_block);
     if (!block)
         return error_memory(w->error);
@@ -129,6 +130,7 @@ static int draw_shadows(work *w)
         w->maps[i] = texels < SIZE_MAX / sizeof(float) ? malloc(texels * sizeof(float)) : NULL;
         if (!w->maps[i])
             return error_memory(w->error);
+        w->out->shadow_bytes += texels * sizeof(float);
         l->shadow.size = w->config.shadow_size;
         status = tyn_raster_shadow(w->raster, &l->shadow, w->maps[i], w->s->meshes, w->s->mesh_count, pool_executor(w->threads),
                                    NULL, NULL, NULL);

@@ -37,6 +37,7 @@ typedef struct render_result {
     float exposure;  /* what was given, or what suits radiance */
     tyn_stats stats; /* of the shafts */
     render_times times;
+    size_t raster_bytes, shadow_bytes; /* memory of the rasterizer, of all shadow maps */
 } render_result;
 
 /* All of it in float. -1: error set (`name` is the scene's for messages), nothing to free. */
