@@ -8,9 +8,9 @@
 
 #define WINDOW 32768
 #define HASH_SIZE 32768
-#define CHAIN 48      /* candidates per position: more costs time, and wins little */
+#define CHAIN 8       /* candidates per position: more costs time, and wins little */
 #define GOOD_MATCH 64 /* long enough: not searched further, and no lazy look */
-#define MATCH_MIN 3
+#define MATCH_MIN 6   /* dithered pictures have short matches everywhere, dearer than their literals */
 #define MATCH_MAX 258
 #define BLOCK_TOKENS 32768
 #define LITERALS 286
@@ -318,8 +318,10 @@ static void add_token(deflater *d, int length, int distance)
 
 static uint32_t hash_at(const unsigned char *p)
 {
-    uint32_t v = (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16;
-    return v * 2654435761u >> 17; /* 15 bits: HASH_SIZE */
+    uint32_t v = 0;
+    for (int i = 0; i < MATCH_MIN; i++)
+        v = v * 16777619u + p[i] + 1;
+    return (v ^ v >> 15) % HASH_SIZE;
 }
 
 /* Enters position `at` and gives the longest earlier match there; 0: none. */

@@ -52,7 +52,7 @@ float render_exposure(const float *radiance, int32_t width, int32_t height)
         counted += bins[i];
     }
     mean = (uint32_t)(weighted / counted);
-    by_mean = 0.25f / bin_value(mean);
-    by_high = 2.0f / bin_value(high);
+    by_mean = 0.2f / bin_value(mean);
+    by_high = 2.5f / bin_value(high);
     return by_mean < by_high ? by_mean : by_high;
 }
