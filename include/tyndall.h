@@ -177,10 +177,20 @@ typedef struct tyn_light {
 } tyn_light;
 
 /* Sets light->shadow.matrix (nothing else) for rendering or reading a map of this light: for a spot the cone's square frustum,
- * for a directional light the smallest rectangle, turned about the light's direction, around what the camera can see of the box
- * bounds_min .. bounds_max and what in the box can shadow it. The box holds all geometry. bounds may be NULL both: all that the
- * camera can see. TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MESH (bounds not finite or min > max). */
+ * for a directional light the smallest rectangle, turned about the light's direction, around what the camera can see and what
+ * in the box bounds_min .. bounds_max can shadow. The box holds all geometry; both NULL: no box, all that the camera can see.
+ * TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MESH (bounds not finite or min > max). */
 tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const float bounds_min[3], const float bounds_max[3]);
+
+struct tyn_mesh;
+
+/* The same, but as tight as a frame allows: around what the camera does see, by its depth buffer (TYN_DEPTH_F32, any size;
+ * NULL: as far as it can see), and what those triangles can shadow that lie between it and the light (a floor under everything
+ * costs no texels). Error in the shafts is in proportion to the map's width: do this where the frame allows. Changes with the
+ * view: shadows crawl by parts of a texel when the camera moves. TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_IMAGE,
+ * TYN_E_ALIGN, TYN_E_LIMIT, TYN_E_MESH. */
+tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, const tyn_image *depth,
+                                const struct tyn_mesh *meshes, int32_t mesh_count);
 
 /* ---- display ------------------------------------------------------------------------------------------------------- */
 
@@ -351,7 +361,7 @@ typedef struct tyn_raster tyn_raster;
 
 /* What tyn_raster_measure gives, as a constant expression for a static block. Arguments as in tyn_raster_config, no zeros. */
 #define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
-    ((size_t)0 * (width) * (height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +                       \
+    (0 * (size_t)(width) * (size_t)(height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +               \
      TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
 #define TYN_RASTER_BYTES 3200
 

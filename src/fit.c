@@ -1,221 +1,365 @@
-/* fit.c - see fit.h */
+/* fit.c - see fit.h
+ *
+ * A directional light's map is worth as much as it is small: at equal texels, error in the shafts is in proportion to its
+ * width. It has to cover points that are seen (on a view ray, before its surface) and can be shadowed (a caster lies on their
+ * way to the light); both sets are measured in 32 directions across the light, and the smallest of 16 rectangles around their
+ * common part wins. */
 #include "fit.h"
 
 #include <math.h>
 
 #include "base.h"
+#include "check.h"
 #include "num.h"
 #include "vec.h"
+#include "view.h"
 
 /* Texels of margin on each side: a nearest-texel look-up at the rim must find what lies there. */
 #define MARGIN 2.0f
-#define MOST 24 /* corners of a polygon: 5 of the view, cut by at most 8 edges of the box, and room */
+#define TURNS 32     /* directions over half a circle */
+#define TILE 8       /* pixels; the farthest depth of a tile bounds what is seen through it */
+#define QUESTIONS 64 /* large triangles that are held against the pixels */
+#define COARSE 32    /* tiles across without a depth buffer */
 
-typedef struct point {
-    float x, y;
-} point;
+/* Extents of a set of points, relative to the camera. */
+typedef struct extent {
+    float low[TURNS], high[TURNS]; /* across the light */
+    float box_low[3], box_high[3]; /* along the world's axes */
+    float near_end, far_end;       /* along the light */
+} extent;
 
-typedef struct polygon {
-    point p[MOST];
-    int32_t n;
-} polygon;
+typedef struct fit {
+    tyni_vec3 d, a, b; /* the light's direction and two axes across */
+    float c[TURNS], s[TURNS];
+    tyni_view view;
+    const tyn_image *depth;
+} fit;
 
-/* Two axes across a direction. */
-static void axes(tyni_vec3 d, tyni_vec3 *a, tyni_vec3 *b)
+static void extent_clear(extent *e)
 {
-    tyni_vec3 other = tyni_absf(d.y) < 0.9f ? tyni_vec(0.0f, 1.0f, 0.0f) : tyni_vec(1.0f, 0.0f, 0.0f);
-    *a = tyni_vec_normalise(tyni_vec_cross(d, other));
-    *b = tyni_vec_cross(*a, d);
+    for (int32_t i = 0; i < TURNS; i++) {
+        e->low[i] = 1e30f;
+        e->high[i] = -1e30f;
+    }
+    for (int32_t i = 0; i < 3; i++) {
+        e->box_low[i] = 1e30f;
+        e->box_high[i] = -1e30f;
+    }
+    e->near_end = 1e30f;
+    e->far_end = -1e30f;
 }
 
-static float turn(point a, point b, point c)
+static void extent_add(extent *e, const fit *f, tyni_vec3 p)
 {
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    const float v[3] = {p.x, p.y, p.z};
+    float x = tyni_vec_dot(p, f->a), y = tyni_vec_dot(p, f->b), z = tyni_vec_dot(p, f->d);
+    for (int32_t i = 0; i < TURNS; i++) {
+        float t = f->c[i] * x + f->s[i] * y;
+        e->low[i] = tyni_minf(e->low[i], t);
+        e->high[i] = tyni_maxf(e->high[i], t);
+    }
+    for (int32_t i = 0; i < 3; i++) {
+        e->box_low[i] = tyni_minf(e->box_low[i], v[i]);
+        e->box_high[i] = tyni_maxf(e->box_high[i], v[i]);
+    }
+    e->near_end = tyni_minf(e->near_end, z);
+    e->far_end = tyni_maxf(e->far_end, z);
 }
 
-/* Convex hull by gift wrapping, counter-clockwise; n is 8 at most. */
-static void hull(polygon *out, const point *p, int32_t n)
+/* True if points in [low, high] can lie behind something in [box_low, box_high], as the light goes. Within a slack: what is
+ * seen of a floor lies on it, and a floor shadows nothing above itself. */
+static int behind(const fit *f, const float low[3], const float high[3], const float box_low[3], const float box_high[3],
+                  float slack)
 {
-    int32_t start = 0, at, next;
-    for (int32_t i = 1; i < n; i++)
-        if (p[i].x < p[start].x || (p[i].x == p[start].x && p[i].y < p[start].y))
-            start = i;
-    at = start;
-    out->n = 0;
-    do {
-        out->p[out->n++] = p[at];
-        next = at == 0 ? 1 : 0;
-        for (int32_t i = 0; i < n; i++) {
-            float side = turn(p[at], p[next], p[i]);
-            float di = (p[i].x - p[at].x) * (p[i].x - p[at].x) + (p[i].y - p[at].y) * (p[i].y - p[at].y);
-            float dn = (p[next].x - p[at].x) * (p[next].x - p[at].x) + (p[next].y - p[at].y) * (p[next].y - p[at].y);
-            if (i != at && (side < 0.0f || (side == 0.0f && di > dn)))
-                next = i;
+    const float d[3] = {f->d.x, f->d.y, f->d.z};
+    for (int32_t i = 0; i < 3; i++) {
+        if (d[i] >= 0.0f && high[i] <= box_low[i] + slack)
+            return 0;
+        if (d[i] <= 0.0f && low[i] >= box_high[i] - slack)
+            return 0;
+    }
+    return 1;
+}
+
+static float largest(const float low[3], const float high[3])
+{
+    return tyni_maxf(tyni_maxf(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+/* Narrows t[0] .. t[1] to where n . (t * v) >= c. */
+static void clip_plane(tyni_vec3 v, tyni_vec3 n, float c, float t[2])
+{
+    float rate = tyni_vec_dot(n, v);
+    if (rate > 1e-20f)
+        t[0] = tyni_maxf(t[0], c / rate);
+    else if (rate < -1e-20f)
+        t[1] = tyni_minf(t[1], c / rate);
+    else if (c > 0.0f)
+        t[1] = t[0] - 1.0f;
+}
+
+/* True if a view ray passes through the triangle's shadow. Every second pixel of every second row is asked: enough for what is
+ * large. */
+static int shades(const fit *f, const tyni_vec3 p[3], float slack)
+{
+    tyni_vec3 n = tyni_vec_normalise(tyni_vec_cross(tyni_vec_sub(p[1], p[0]), tyni_vec_sub(p[2], p[0]))), side[3];
+    float edge[3];
+    if (tyni_vec_dot(n, f->d) < 0.0f)
+        n = tyni_vec_scale(n, -1.0f); /* now the way that its shadow falls */
+    for (int32_t i = 0; i < 3; i++) {
+        tyni_vec3 inner = p[(i + 2) % 3];
+        side[i] = tyni_vec_cross(f->d, tyni_vec_sub(p[(i + 1) % 3], p[i]));
+        if (tyni_vec_dot(side[i], tyni_vec_sub(inner, p[i])) < 0.0f)
+            side[i] = tyni_vec_scale(side[i], -1.0f);
+        edge[i] = tyni_vec_dot(side[i], p[i]);
+    }
+    for (int32_t y = 0; y < f->view.height; y += 2) {
+        const float *row = tyni_image_row(f->depth, y);
+        for (int32_t x = 0; x < f->view.width; x += 2) {
+            tyni_vec3 v = tyni_view_direction(&f->view, (float)x + 0.5f, (float)y + 0.5f);
+            float t[2] = {0.0f, tyni_view_depth(&f->view, row[x])};
+            clip_plane(v, n, tyni_vec_dot(n, p[0]) + slack, t);
+            for (int32_t i = 0; i < 3; i++)
+                clip_plane(v, side[i], edge[i], t);
+            if (t[0] < t[1])
+                return 1;
         }
-        at = next;
-    } while (at != start && out->n < n);
+    }
+    return 0;
 }
 
-/* Cuts a convex polygon to the left of the line a - b. */
-static void cut(polygon *poly, point a, point b)
+/* A caster as large as a fair part of the scene decides the map's size: worth asking the pixels themselves. */
+static int large(const tyni_vec3 p[3], float size)
 {
-    polygon in = *poly;
-    poly->n = 0;
-    for (int32_t i = 0; i < in.n; i++) {
-        point p = in.p[i], q = in.p[i + 1 < in.n ? i + 1 : 0];
-        float fp = turn(a, b, p), fq = turn(a, b, q);
-        if (fp >= 0.0f && poly->n < MOST)
-            poly->p[poly->n++] = p;
-        if ((fp >= 0.0f) != (fq >= 0.0f) && poly->n < MOST) {
-            float f = fp / (fp - fq);
-            poly->p[poly->n].x = p.x + f * (q.x - p.x);
-            poly->p[poly->n++].y = p.y + f * (q.y - p.y);
+    for (int32_t i = 0; i < 3; i++)
+        if (tyni_vec_length(tyni_vec_sub(p[i], p[(i + 1) % 3])) > size)
+            return 1;
+    return 0;
+}
+
+static void cast_mesh(extent *casters, const fit *f, const tyn_mesh *mesh, const extent *seen, int32_t *questions)
+{
+    float size = largest(seen->box_low, seen->box_high);
+    float slack = 1e-4f * size;
+    for (uint32_t i = 0; i < mesh->triangles; i++) {
+        tyni_vec3 p[3];
+        extent box;
+        for (int32_t k = 0; k < 3; k++)
+            p[k] = tyni_vec_sub(tyni_vec_load(mesh->positions + 3 * (size_t)mesh->indices[3 * (size_t)i + (size_t)k]),
+                                f->view.position);
+        if (!tyni_vec_finite(p[0]) || !tyni_vec_finite(p[1]) || !tyni_vec_finite(p[2]))
+            continue;
+        for (int32_t k = 0; k < 3; k++) {
+            const float q[3][3] = {{p[0].x, p[1].x, p[2].x}, {p[0].y, p[1].y, p[2].y}, {p[0].z, p[1].z, p[2].z}};
+            box.box_low[k] = tyni_minf(tyni_minf(q[k][0], q[k][1]), q[k][2]);
+            box.box_high[k] = tyni_maxf(tyni_maxf(q[k][0], q[k][1]), q[k][2]);
         }
+        if (!behind(f, seen->box_low, seen->box_high, box.box_low, box.box_high, slack))
+            continue;
+        if (f->depth && *questions > 0 && large(p, 0.2f * size)) {
+            --*questions;
+            if (!shades(f, p, slack))
+                continue;
+        }
+        for (int32_t k = 0; k < 3; k++)
+            extent_add(casters, f, p[k]);
     }
 }
 
-/* The smallest rectangle around a polygon over turns of a quarter circle: its axis (cosine, sine) and ranges. */
-typedef struct rectangle {
-    float c, s, x0, x1, y0, y1;
-} rectangle;
-
-static void smallest(rectangle *best, const polygon *poly)
+/* 0: nothing can cast on what is seen. */
+static int cast_all(extent *casters, const fit *f, const tyni_fit_casters *c, const extent *seen)
 {
-    float least = 0.0f;
-    for (int32_t i = 0; i < 64; i++) {
-        rectangle r = {0.0f, 0.0f, 1e30f, -1e30f, 1e30f, -1e30f};
-        float area;
-        tyni_num_sincos((float)i * (0.5f * TYNI_PI / 64.0f), &r.s, &r.c);
-        for (int32_t k = 0; k < poly->n; k++) {
-            float x = r.c * poly->p[k].x + r.s * poly->p[k].y, y = r.c * poly->p[k].y - r.s * poly->p[k].x;
-            r.x0 = tyni_minf(r.x0, x);
-            r.x1 = tyni_maxf(r.x1, x);
-            r.y0 = tyni_minf(r.y0, y);
-            r.y1 = tyni_maxf(r.y1, y);
+    int32_t questions = QUESTIONS;
+    extent_clear(casters);
+    for (int32_t i = 0; i < c->mesh_count; i++)
+        cast_mesh(casters, f, &c->meshes[i], seen, &questions);
+    if (c->low) {
+        for (int32_t i = 0; i < 8; i++)
+            extent_add(casters, f,
+                       tyni_vec_sub(tyni_vec((i & 1 ? c->high : c->low)[0], (i & 2 ? c->high : c->low)[1],
+                                             (i & 4 ? c->high : c->low)[2]),
+                                    f->view.position));
+    }
+    return casters->near_end <= casters->far_end;
+}
+
+/* Narrows a ray's part t[0] .. t[1] to where the casters' box can shadow it. */
+static void clip_ray(const fit *f, tyni_vec3 v, float slack, const extent *casters, float t[2])
+{
+    const float d[3] = {f->d.x, f->d.y, f->d.z}, w[3] = {v.x, v.y, v.z};
+    for (int32_t i = 0; i < 3; i++) {
+        /* d > 0: only beyond the low side; d < 0: only below the high side */
+        float sign = d[i] > 0.0f ? 1.0f : -1.0f, rate = sign * w[i];
+        float edge = sign > 0.0f ? casters->box_low[i] - slack : -(casters->box_high[i] + slack);
+        if (d[i] == 0.0f)
+            continue;
+        if (rate > 1e-12f)
+            t[0] = tyni_maxf(t[0], edge / rate);
+        else if (rate < -1e-12f)
+            t[1] = tyni_minf(t[1], edge / rate);
+        else if (edge > 0.0f)
+            t[1] = t[0] - 1.0f;
+    }
+}
+
+/* Also widens box_low .. box_high by the very points that are seen: by a tile's corners a floor would seem to be seen from
+ * below. */
+static float tile_depth(const fit *f, int32_t x, int32_t y, float low[3], float high[3])
+{
+    int32_t x1 = tyni_mini(x + TILE, f->view.width), y1 = tyni_mini(y + TILE, f->view.height);
+    float most = 0.0f;
+    for (; y < y1; y++) {
+        const float *row = tyni_image_row(f->depth, y);
+        for (int32_t i = x; i < x1; i++) {
+            float depth = tyni_view_depth(&f->view, row[i]);
+            tyni_vec3 p = tyni_vec_scale(tyni_view_direction(&f->view, (float)i + 0.5f, (float)y + 0.5f), depth);
+            const float v[3] = {p.x, p.y, p.z};
+            most = tyni_maxf(most, depth);
+            for (int32_t k = 0; k < 3; k++) {
+                low[k] = tyni_minf(low[k], v[k]);
+                high[k] = tyni_maxf(high[k], v[k]);
+            }
         }
-        area = (r.x1 - r.x0) * (r.y1 - r.y0);
+    }
+    return most;
+}
+
+/* What is seen, tile by tile; with casters only what they can shadow. */
+static void see(extent *seen, const fit *f, const extent *casters)
+{
+    int32_t step_x = f->depth ? TILE : (f->view.width + COARSE - 1) / COARSE;
+    int32_t step_y = f->depth ? TILE : (f->view.height + COARSE - 1) / COARSE;
+    float tile = tyni_maxf((float)step_x * tyni_vec_length(f->view.dx), (float)step_y * tyni_vec_length(f->view.dy));
+    float low[3] = {0.0f, 0.0f, 0.0f}, high[3] = {0.0f, 0.0f, 0.0f};
+    extent_clear(seen);
+    for (int32_t y = 0; y < f->view.height; y += step_y)
+        for (int32_t x = 0; x < f->view.width; x += step_x) {
+            float depth = f->depth ? tile_depth(f, x, y, low, high) : f->view.far_depth;
+            for (int32_t i = 0; i < 4; i++) {
+                tyni_vec3 v = tyni_view_direction(&f->view, (float)(i & 1 ? x + step_x : x), (float)(i & 2 ? y + step_y : y));
+                float t[2] = {0.0f, depth};
+                if (casters)
+                    clip_ray(f, v, tile * depth, casters, t);
+                if (t[0] > t[1])
+                    continue;
+                extent_add(seen, f, tyni_vec_scale(v, t[0]));
+                extent_add(seen, f, tyni_vec_scale(v, t[1]));
+            }
+        }
+    if (f->depth) {
+        memcpy(seen->box_low, low, sizeof low);
+        memcpy(seen->box_high, high, sizeof high);
+    }
+}
+
+static void fit_begin(fit *f, const tyn_light *light, const tyn_camera *camera, const tyn_image *depth)
+{
+    tyni_vec3 other;
+    f->d = tyni_vec_normalise(tyni_vec_load(light->direction));
+    other = tyni_absf(f->d.y) < 0.9f ? tyni_vec(0.0f, 1.0f, 0.0f) : tyni_vec(1.0f, 0.0f, 0.0f);
+    f->a = tyni_vec_normalise(tyni_vec_cross(f->d, other));
+    f->b = tyni_vec_cross(f->a, f->d);
+    for (int32_t i = 0; i < TURNS; i++)
+        tyni_num_sincos((float)i * (TYNI_PI / (float)TURNS), &f->s[i], &f->c[i]);
+    tyni_view_camera(&f->view, camera, depth ? depth->width : 1024, depth ? depth->height : 1024);
+    f->depth = depth;
+}
+
+/* The rectangle of least area; its axes are the directions i and i + TURNS / 2. */
+static int32_t smallest(const extent *e)
+{
+    int32_t best = 0;
+    float least = 0.0f;
+    for (int32_t i = 0; i < TURNS / 2; i++) {
+        int32_t j = i + TURNS / 2;
+        float area = tyni_maxf(e->high[i] - e->low[i], 0.0f) * tyni_maxf(e->high[j] - e->low[j], 0.0f);
         if (i == 0 || area < least) {
             least = area;
-            *best = r;
+            best = i;
         }
     }
+    return best;
 }
 
-/* Where view rays can be: the apex and the far corners, relative to the camera. */
-static void view_corners(tyni_vec3 corner[5], const tyn_camera *camera)
+/* A row of the matrix: (axis . (p - camera) - origin) * scale. */
+static void row(float *m, tyni_vec3 axis, float origin, float scale, tyni_vec3 camera)
 {
-    tyni_vec3 right = tyni_vec_load(camera->right), up = tyni_vec_load(camera->up), forward = tyni_vec_load(camera->forward);
-    corner[0] = tyni_vec(0.0f, 0.0f, 0.0f);
-    for (int32_t i = 0; i < 4; i++) {
-        tyni_vec3 d = tyni_vec_mad(forward, i & 1 ? camera->right_edge : camera->left_edge, right);
-        corner[i + 1] = tyni_vec_scale(tyni_vec_mad(d, i & 2 ? camera->top_edge : camera->bottom_edge, up), camera->far_depth);
-    }
-}
-
-static void box_corners(tyni_vec3 corner[8], const tyn_camera *camera, const float low[3], const float high[3])
-{
-    for (int32_t i = 0; i < 8; i++)
-        corner[i] = tyni_vec((i & 1 ? high : low)[0] - camera->position[0], (i & 2 ? high : low)[1] - camera->position[1],
-                             (i & 4 ? high : low)[2] - camera->position[2]);
-}
-
-static void range_along(const tyni_vec3 *p, int32_t n, tyni_vec3 d, float *low, float *high)
-{
-    *low = 1e30f;
-    *high = -1e30f;
-    for (int32_t i = 0; i < n; i++) {
-        float t = tyni_vec_dot(p[i], d);
-        *low = tyni_minf(*low, t);
-        *high = tyni_maxf(*high, t);
-    }
-}
-
-/* A row of the matrix: (axis . (p - camera) - origin) * scale + offset. */
-static void row(float *m, tyni_vec3 axis, float origin, float scale, const tyn_camera *camera)
-{
-    float at = axis.x * camera->position[0] + axis.y * camera->position[1] + axis.z * camera->position[2];
     m[0] = axis.x * scale;
     m[1] = axis.y * scale;
     m[2] = axis.z * scale;
-    m[3] = -(at + origin) * scale;
+    m[3] = -(tyni_vec_dot(axis, camera) + origin) * scale;
 }
 
-static void project(point *out, const tyni_vec3 *p, int32_t n, tyni_vec3 a, tyni_vec3 b)
+static void side(float *m, const fit *f, const extent *e, int32_t turn, int32_t texels)
 {
-    for (int32_t i = 0; i < n; i++) {
-        out[i].x = tyni_vec_dot(p[i], a);
-        out[i].y = tyni_vec_dot(p[i], b);
-    }
+    float width = tyni_maxf(e->high[turn] - e->low[turn], 1e-6f), rim = width * MARGIN / (float)tyni_maxi(texels, 64);
+    tyni_vec3 axis = tyni_vec_mad(tyni_vec_scale(f->a, f->c[turn]), f->s[turn], f->b);
+    row(m, axis, e->low[turn] - rim, 1.0f / (width + 2.0f * rim), f->view.position);
 }
 
-void tyni_fit_directional(float matrix[16], const tyn_light *light, const tyn_camera *camera, const float low[3],
-                          const float high[3])
+void tyni_fit_directional(float matrix[16], const tyn_light *light, const tyn_camera *camera, const tyn_image *depth,
+                          const tyni_fit_casters *c)
 {
-    tyni_vec3 d = tyni_vec_normalise(tyni_vec_load(light->direction)), a, b, x, y, view[5], box[8];
-    float z0, z1, b0, b1, sx, sy, margin;
-    polygon poly, edge;
-    rectangle r;
-    point p[8];
-    axes(d, &a, &b);
-    view_corners(view, camera);
-    project(p, view, 5, a, b);
-    hull(&poly, p, 5);
-    range_along(view, 5, d, &z0, &z1);
-    if (low) {
-        polygon whole = poly;
-        box_corners(box, camera, low, high);
-        project(p, box, 8, a, b);
-        hull(&edge, p, 8);
-        for (int32_t i = 0; i < edge.n; i++)
-            cut(&poly, edge.p[i], edge.p[i + 1 < edge.n ? i + 1 : 0]);
-        if (poly.n < 3)
-            poly = whole; /* nothing shadows anything in view; any map will do */
-        /* nothing beyond the box casts; nothing before what is seen needs more than to be clamped to the near end */
-        range_along(box, 8, d, &b0, &b1);
-        z0 = tyni_maxf(z0, b0);
-        z1 = b1;
+    extent seen, casters;
+    float z0, z1, rim;
+    fit f;
+    int32_t best;
+    fit_begin(&f, light, camera, depth);
+    see(&seen, &f, NULL);
+    z0 = seen.near_end;
+    z1 = seen.far_end;
+    if ((c->mesh_count || c->low) && cast_all(&casters, &f, c, &seen)) {
+        extent shaded;
+        see(&shaded, &f, &casters);
+        if (shaded.near_end <= shaded.far_end) {
+            seen = shaded;
+            /* nothing beyond the casters casts, and nothing in front of what is seen needs more than the near end */
+            z0 = tyni_maxf(shaded.near_end, casters.near_end);
+            z1 = tyni_maxf(casters.far_end, z0);
+            for (int32_t i = 0; i < TURNS; i++) {
+                seen.low[i] = tyni_maxf(seen.low[i], casters.low[i]);
+                seen.high[i] = tyni_minf(seen.high[i], casters.high[i]);
+            }
+        }
     }
-    smallest(&r, &poly);
-    margin = MARGIN / (float)tyni_maxi(light->shadow.size, 64);
-    sx = tyni_maxf((r.x1 - r.x0) * (1.0f + 2.0f * margin), 1e-6f);
-    sy = tyni_maxf((r.y1 - r.y0) * (1.0f + 2.0f * margin), 1e-6f);
-    x = tyni_vec_mad(tyni_vec_scale(a, r.c), r.s, b);
-    y = tyni_vec_mad(tyni_vec_scale(b, r.c), -r.s, a);
-    row(matrix, x, r.x0 - margin * (r.x1 - r.x0), 1.0f / sx, camera);
-    row(matrix + 4, y, r.y0 - margin * (r.y1 - r.y0), 1.0f / sy, camera);
-    margin = tyni_maxf((z1 - z0) * 1e-3f, 1e-6f);
-    z0 -= margin;
-    z1 = tyni_maxf(z1, z0) + margin;
-    /* 1 at z0, 0 at z1 */
-    row(matrix + 8, d, z1, -1.0f / (z1 - z0), camera);
+    best = smallest(&seen);
+    side(matrix, &f, &seen, best, light->shadow.size);
+    side(matrix + 4, &f, &seen, best + TURNS / 2, light->shadow.size);
+    rim = tyni_maxf((z1 - z0) * 1e-3f, 1e-6f);
+    row(matrix + 8, f.d, z1 + rim, -1.0f / (z1 - z0 + 2.0f * rim), f.view.position);
     matrix[12] = matrix[13] = matrix[14] = 0.0f;
     matrix[15] = 1.0f;
 }
 
-void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *camera, const float low[3], const float high[3])
+static float farthest(const tyn_light *light, const tyn_camera *camera, const tyni_fit_casters *c)
 {
-    tyni_vec3 d = tyni_vec_normalise(tyni_vec_load(light->direction)), a, b, from, corner[8];
-    float sine, cosine, half, reach = camera->far_depth;
-    axes(d, &a, &b);
-    from = tyni_vec_sub(tyni_vec_load(light->position), tyni_vec_load(camera->position));
+    tyni_vec3 from = tyni_vec_load(light->position);
+    float reach = 0.0f;
+    for (int32_t i = 0; i < c->mesh_count; i++)
+        for (uint32_t k = 0; k < c->meshes[i].vertices; k++) {
+            tyni_vec3 p = tyni_vec_sub(tyni_vec_load(c->meshes[i].positions + 3 * (size_t)k), from);
+            if (tyni_vec_finite(p))
+                reach = tyni_maxf(reach, tyni_vec_length(p));
+        }
+    for (int32_t i = 0; i < 8 && c->low; i++) {
+        tyni_vec3 p = tyni_vec((i & 1 ? c->high : c->low)[0], (i & 2 ? c->high : c->low)[1], (i & 4 ? c->high : c->low)[2]);
+        reach = tyni_maxf(reach, tyni_vec_length(tyni_vec_sub(p, from)));
+    }
+    return reach > 0.0f ? reach : camera->far_depth;
+}
+
+void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *camera, const tyni_fit_casters *casters)
+{
+    float sine, cosine, half;
+    fit f;
+    fit_begin(&f, light, camera, NULL);
     tyni_num_sincos(0.5f * light->angle, &sine, &cosine);
     half = sine / cosine * (1.0f + 2.0f * MARGIN / (float)tyni_maxi(light->shadow.size, 64));
-    if (low) {
-        box_corners(corner, camera, low, high);
-        reach = 0.0f;
-        for (int32_t i = 0; i < 8; i++)
-            reach = tyni_maxf(reach, tyni_vec_length(tyni_vec_sub(corner[i], from)));
-    }
-    /* w = depth from the light; u = 1/2 + (x / w) / (2 half); z = near / w with a near end close enough not to be met */
-    for (int32_t i = 0; i < 3; i++) {
-        const float da[3] = {a.x, a.y, a.z}, db[3] = {b.x, b.y, b.z}, dd[3] = {d.x, d.y, d.z};
-        matrix[i] = 0.5f * (da[i] / half + dd[i]);
-        matrix[4 + i] = 0.5f * (db[i] / half + dd[i]);
-        matrix[8 + i] = 0.0f;
-        matrix[12 + i] = dd[i];
-    }
-    for (int32_t r = 0; r < 4; r++)
-        matrix[4 * r + 3] = -(matrix[4 * r] * light->position[0] + matrix[4 * r + 1] * light->position[1] +
-                              matrix[4 * r + 2] * light->position[2]);
-    matrix[11] = tyni_maxf(reach * 1e-3f, 1e-6f);
+    /* w is the depth from the light, u = 1/2 + (x / w) / (2 half) and v alike, z = near / w with a near end too close to be met
+     */
+    row(matrix, tyni_vec_mad(tyni_vec_scale(f.d, 0.5f), 0.5f / half, f.a), 0.0f, 1.0f, tyni_vec_load(light->position));
+    row(matrix + 4, tyni_vec_mad(tyni_vec_scale(f.d, 0.5f), 0.5f / half, f.b), 0.0f, 1.0f, tyni_vec_load(light->position));
+    matrix[8] = matrix[9] = matrix[10] = 0.0f;
+    matrix[11] = tyni_maxf(farthest(light, camera, casters) * 1e-3f, 1e-6f);
+    row(matrix + 12, f.d, 0.0f, 1.0f, tyni_vec_load(light->position));
 }

@@ -1,12 +1,19 @@
-/* fit.h - the shadow map's matrix for a light and what a camera sees. */
+/* fit.h - the shadow map's matrix for a light and what a camera sees. All arguments are checked before. */
 #ifndef TYNI_FIT_H
 #define TYNI_FIT_H
 
 #include "base.h"
 
-/* low NULL: no box. All arguments checked. */
-void tyni_fit_directional(float matrix[16], const tyn_light *light, const tyn_camera *camera, const float low[3],
-                          const float high[3]);
-void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *camera, const float low[3], const float high[3]);
+/* What may cast: triangles, or a box, or (mesh_count 0 and low NULL) anything anywhere. */
+typedef struct tyni_fit_casters {
+    const tyn_mesh *meshes;
+    int32_t mesh_count;
+    const float *low, *high;
+} tyni_fit_casters;
+
+/* depth NULL: as far as the camera can see. */
+void tyni_fit_directional(float matrix[16], const tyn_light *light, const tyn_camera *camera, const tyn_image *depth,
+                          const tyni_fit_casters *casters);
+void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *camera, const tyni_fit_casters *casters);
 
 #endif

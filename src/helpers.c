@@ -66,17 +66,34 @@ tyn_status tyn_medium_air(tyn_medium media[2], float scale)
     return TYN_OK;
 }
 
-tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const float bounds_min[3], const float bounds_max[3])
+static tyn_status check_fit(const tyn_light *light, const tyn_camera *camera)
 {
     tyn_light bare;
-    if (!light || !camera || !bounds_min != !bounds_max)
+    if (!light || !camera)
         return TYN_E_NULL;
     if (tyni_check_camera(camera) != TYN_OK)
         return TYN_E_CAMERA;
     bare = *light;
-    bare.shadow.depth = NULL; /* the matrix is what is asked for, whatever it holds now */
-    if (tyni_check_lights(&bare, 1, TYN_MAX_SHADOW) != TYN_OK)
-        return TYN_E_LIGHT;
+    bare.shadow.depth = NULL; /* its matrix is what is asked for, whatever it holds now */
+    return tyni_check_lights(&bare, 1, TYN_MAX_SHADOW);
+}
+
+static void fit(tyn_light *light, const tyn_camera *camera, const tyn_image *depth, const tyni_fit_casters *casters)
+{
+    if (light->kind == TYN_LIGHT_DIRECTIONAL)
+        tyni_fit_directional(light->shadow.matrix, light, camera, depth, casters);
+    else
+        tyni_fit_spot(light->shadow.matrix, light, camera, casters);
+}
+
+tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const float bounds_min[3], const float bounds_max[3])
+{
+    tyni_fit_casters casters = {NULL, 0, NULL, NULL};
+    tyn_status status = check_fit(light, camera);
+    if (status != TYN_OK)
+        return status;
+    if (!bounds_min != !bounds_max)
+        return TYN_E_NULL;
     if (bounds_min) {
         if (!tyni_check_finite(bounds_min, 3) || !tyni_check_finite(bounds_max, 3))
             return TYN_E_MESH;
@@ -84,9 +101,42 @@ tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const floa
             if (bounds_min[i] > bounds_max[i])
                 return TYN_E_MESH;
     }
-    if (light->kind == TYN_LIGHT_DIRECTIONAL)
-        tyni_fit_directional(light->shadow.matrix, light, camera, bounds_min, bounds_max);
-    else
-        tyni_fit_spot(light->shadow.matrix, light, camera, bounds_min, bounds_max);
+    casters.low = bounds_min;
+    casters.high = bounds_max;
+    fit(light, camera, NULL, &casters);
+    return TYN_OK;
+}
+
+static tyn_status check_mesh(const tyn_mesh *mesh)
+{
+    if (!mesh->triangles)
+        return TYN_OK;
+    if (!mesh->positions || !mesh->indices)
+        return TYN_E_NULL;
+    for (size_t i = 0; i < 3 * (size_t)mesh->triangles; i++)
+        if (mesh->indices[i] >= mesh->vertices)
+            return TYN_E_MESH;
+    return TYN_OK;
+}
+
+tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, const tyn_image *depth, const tyn_mesh *meshes,
+                                int32_t mesh_count)
+{
+    tyni_fit_casters casters = {NULL, 0, NULL, NULL};
+    tyn_status status = check_fit(light, camera);
+    if (status != TYN_OK)
+        return status;
+    if (depth && (status = tyni_check_image(depth, TYNI_FORMAT_BIT(TYN_DEPTH_F32))) != TYN_OK)
+        return status;
+    if (mesh_count < 0)
+        return TYN_E_LIMIT;
+    if (mesh_count > 0 && !meshes)
+        return TYN_E_NULL;
+    for (int32_t i = 0; i < mesh_count; i++)
+        if ((status = check_mesh(&meshes[i])) != TYN_OK)
+            return status;
+    casters.meshes = meshes;
+    casters.mesh_count = mesh_count;
+    fit(light, camera, depth, &casters);
     return TYN_OK;
 }
