@@ -1,0 +1,292 @@
+/* rig.c - see rig.h */
+#include "rig.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stock.h"
+
+const rig_way rig_ways[RIG_WAYS] = {{TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS},
+                                    {TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS},
+                                    {TYN_METHOD_MARCH, TYN_RAYS_WORDS},
+                                    {TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS},
+                                    {TYN_METHOD_NONE, TYN_RAYS_WORDS}};
+
+void *rig_block(size_t bytes)
+{
+    void *block = NULL;
+    return posix_memalign(&block, TYN_ALIGNMENT, bytes ? bytes : 1) ? NULL : block;
+}
+
+static void narrow(float *to, const double *from, int count)
+{
+    for (int i = 0; i < count; i++)
+        to[i] = (float)from[i];
+}
+
+static void make_camera(tyn_camera *to, const oracle_camera *from)
+{
+    narrow(to->position, from->position, 3);
+    narrow(to->right, from->right, 3);
+    narrow(to->up, from->up, 3);
+    narrow(to->forward, from->forward, 3);
+    to->left_edge = (float)from->left_edge;
+    to->right_edge = (float)from->right_edge;
+    to->bottom_edge = (float)from->bottom_edge;
+    to->top_edge = (float)from->top_edge;
+    to->near_depth = (float)from->near_depth;
+    to->far_depth = (float)from->far_depth;
+}
+
+static void make_meshes(rig *r, const oracle_scene *scene)
+{
+    static const uint32_t fan[6] = {0, 1, 2, 0, 2, 3};
+    for (int k = 0; k < 3; k++) {
+        r->bounds_min[k] = HUGE_VALF;
+        r->bounds_max[k] = -HUGE_VALF;
+    }
+    for (int i = 0; i < scene->polygons; i++) {
+        const oracle_polygon *p = &scene->polygon[i];
+        tyn_mesh *mesh = &r->mesh[i];
+        float *at = r->positions + 12 * i;
+        for (int j = 0; j < p->corners; j++)
+            for (int k = 0; k < 3; k++) {
+                float x = at[3 * j + k] = (float)p->corner[j][k];
+                r->bounds_min[k] = fminf(r->bounds_min[k], x);
+                r->bounds_max[k] = fmaxf(r->bounds_max[k], x);
+            }
+        mesh->positions = at;
+        mesh->vertices = (uint32_t)p->corners;
+        mesh->indices = fan;
+        mesh->triangles = (uint32_t)p->corners - 2;
+        narrow(mesh->material.albedo, p->albedo, 3);
+    }
+    r->meshes = scene->polygons;
+}
+
+static void make_lights(rig *r, const oracle_scene *scene)
+{
+    for (int i = 0; i < scene->lights; i++) {
+        const oracle_light *from = &scene->light[i];
+        tyn_light *to = &r->light[i];
+        to->kind = from->kind == ORACLE_SPOT ? TYN_LIGHT_SPOT : TYN_LIGHT_DIRECTIONAL;
+        narrow(to->position, from->position, 3);
+        narrow(to->direction, from->direction, 3);
+        narrow(to->colour, from->colour, 3);
+        to->angle = from->kind == ORACLE_SPOT ? (float)(2 * acos(from->cosine)) : 0.0f;
+    }
+    for (int i = 0; i < scene->media; i++) {
+        const oracle_medium *from = &scene->medium[i];
+        narrow(r->medium[i].scatter, from->scatter, 3);
+        narrow(r->medium[i].absorb, from->absorb, 3);
+        r->medium[i].phase = from->phase;
+        r->medium[i].g = (float)from->g;
+    }
+    r->lights = scene->lights;
+    r->media = scene->media;
+}
+
+static int failed(tyn_status status, const char *call)
+{
+    if (status != TYN_OK)
+        printf("rig: %s: %s\n", call, tyn_status_name(status));
+    return status != TYN_OK;
+}
+
+/* Shadow maps, then the picture without a medium. */
+static int draw(rig *r, const oracle_scene *scene)
+{
+    tyn_raster_config config = {0};
+    tyn_raster *raster;
+    tyn_surface surface;
+    size_t bytes = 0;
+    void *block;
+    int bad;
+    config.width = r->width > r->shadow_size ? r->width : r->shadow_size;
+    config.height = r->height > r->shadow_size ? r->height : r->shadow_size;
+    if (failed(tyn_raster_measure(&config, &bytes), "tyn_raster_measure"))
+        return 0;
+    block = rig_block(bytes);
+    bad = !block || failed(tyn_raster_init(&raster, &config, block, bytes), "tyn_raster_init");
+    for (int i = 0; !bad && i < r->lights; i++) {
+        tyn_light *light = &r->light[i];
+        bad = failed(tyn_shadow_fit(light, &r->camera, r->bounds_min, r->bounds_max), "tyn_shadow_fit");
+        light->shadow.size = r->shadow_size;
+        light->shadow.depth = r->map[i];
+        bad = bad || failed(tyn_raster_shadow(raster, &light->shadow, r->map[i], r->mesh, r->meshes, NULL, NULL, NULL, NULL),
+                            "tyn_raster_shadow");
+    }
+    memset(&surface, 0, sizeof surface);
+    surface.camera = r->camera;
+    surface.meshes = r->mesh;
+    surface.mesh_count = r->meshes;
+    surface.lights = r->light;
+    surface.light_count = r->lights;
+    surface.media = r->medium;
+    surface.medium_count = r->media;
+    narrow(surface.ambient, scene->ambient, 3);
+    narrow(surface.background, scene->background, 3);
+    surface.colour.pixels = r->colour;
+    surface.depth.pixels = r->depth;
+    surface.colour.width = surface.depth.width = r->width;
+    surface.colour.height = surface.depth.height = r->height;
+    surface.colour.format = TYN_RGB_F32;
+    surface.depth.format = TYN_DEPTH_F32;
+    bad = bad || failed(tyn_raster_surface(raster, &surface), "tyn_raster_surface");
+    free(block);
+    return !bad;
+}
+
+rig *rig_new(const oracle_scene *scene, int32_t shadow_size)
+{
+    rig *r = calloc(1, sizeof *r);
+    size_t pixels = (size_t)scene->width * (size_t)scene->height, texels = (size_t)shadow_size * (size_t)shadow_size;
+    int ready = r != NULL;
+    if (!r)
+        return NULL;
+    r->width = scene->width;
+    r->height = scene->height;
+    r->shadow_size = shadow_size;
+    r->mesh = calloc((size_t)scene->polygons + 1, sizeof *r->mesh);
+    r->positions = calloc((size_t)scene->polygons + 1, 12 * sizeof *r->positions);
+    r->depth = calloc(pixels, sizeof *r->depth);
+    r->colour = calloc(pixels, 3 * sizeof *r->colour);
+    r->scatter = calloc(pixels, 3 * sizeof *r->scatter);
+    r->target = calloc(pixels, 4);
+    ready = r->mesh && r->positions && r->depth && r->colour && r->scatter && r->target;
+    for (int i = 0; i < scene->lights; i++) {
+        r->map[i] = calloc(texels, sizeof *r->map[i]);
+        ready = ready && r->map[i];
+    }
+    if (ready) {
+        make_camera(&r->camera, &scene->camera);
+        make_meshes(r, scene);
+        make_lights(r, scene);
+        ready = draw(r, scene);
+    }
+    if (!ready) {
+        rig_free(r);
+        return NULL;
+    }
+    return r;
+}
+
+void rig_free(rig *r)
+{
+    if (!r)
+        return;
+    for (int i = 0; i < ORACLE_LIGHTS; i++)
+        free(r->map[i]);
+    free(r->mesh);
+    free(r->positions);
+    free(r->depth);
+    free(r->colour);
+    free(r->scatter);
+    free(r->target);
+    free(r);
+}
+
+rig *rig_stock(const char *name, int width, int height, int32_t shadow_size)
+{
+    oracle_scene *scene = stock_new(name, width, height);
+    rig *r = scene ? rig_new(scene, shadow_size) : NULL;
+    model_free(scene);
+    if (!r) {
+        printf("no rig of %s\n", name);
+        exit(1);
+    }
+    return r;
+}
+
+tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays)
+{
+    tyn_config config;
+    memset(&config, 0, sizeof config);
+    config.width = r->width;
+    config.height = r->height;
+    config.shadow_size = r->shadow_size;
+    config.lights = r->lights > 1 ? r->lights : 1;
+    config.method = method;
+    config.rays = rays;
+    return config;
+}
+
+tyn_frame rig_frame(rig *r)
+{
+    tyn_frame frame;
+    memset(&frame, 0, sizeof frame);
+    frame.camera = r->camera;
+    frame.depth.pixels = r->depth;
+    frame.colour.pixels = r->colour;
+    frame.scatter.pixels = r->scatter;
+    frame.target.pixels = r->target;
+    frame.depth.width = frame.colour.width = frame.scatter.width = frame.target.width = r->width;
+    frame.depth.height = frame.colour.height = frame.scatter.height = frame.target.height = r->height;
+    frame.depth.format = TYN_DEPTH_F32;
+    frame.colour.format = frame.scatter.format = TYN_RGB_F32;
+    frame.target.format = TYN_RGBA8_SRGB;
+    frame.lights = r->light;
+    frame.light_count = r->lights;
+    frame.media = r->medium;
+    frame.medium_count = r->media;
+    frame.display.exposure = 1.0f;
+    frame.display.tone = TYN_TONE_FILM;
+    frame.stats = &r->stats;
+    return frame;
+}
+
+tyn_context *rig_context(const tyn_config *config)
+{
+    size_t bytes = 0;
+    tyn_context *context = NULL;
+    void *block;
+    if (failed(tyn_measure(config, &bytes), "tyn_measure"))
+        return NULL;
+    block = rig_block(bytes);
+    if (block)
+        memset(block, 0xa5, bytes); /* what a context finds in its block must not matter */
+    if (!block || failed(tyn_init(&context, config, block, bytes), "tyn_init")) {
+        free(block);
+        return NULL;
+    }
+    return context;
+}
+
+tyn_status rig_render(rig *r, const tyn_config *config, const tyn_frame *frame)
+{
+    tyn_context *context = rig_context(config);
+    tyn_status status = context ? tyn_render(context, frame) : TYN_E_MEMORY;
+    (void)r;
+    free(context);
+    return status;
+}
+
+double rig_l1(const float *a, const float *b, size_t count)
+{
+    double gap = 0, sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        gap += fabs((double)a[i] - (double)b[i]);
+        sum += fabs((double)b[i]);
+    }
+    return sum > 0 ? gap / sum : gap;
+}
+
+double rig_psnr(const uint8_t *a, const uint8_t *b, size_t pixels)
+{
+    double sum = 0;
+    for (size_t i = 0; i < 4 * pixels; i++)
+        if (i % 4 != 3)
+            sum += (double)((a[i] - b[i]) * (a[i] - b[i]));
+    return sum > 0 ? 10 * log10(255.0 * 255.0 * 3.0 * (double)pixels / sum) : 99.0;
+}
+
+uint64_t rig_hash(const void *data, size_t size)
+{
+    const uint8_t *bytes = data;
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    return hash;
+}

@@ -1,0 +1,77 @@
+/* stock.c - see stock.h */
+#include "stock.h"
+
+#include <string.h>
+
+#define SUN(r, u, f) ORACLE_DIRECTIONAL, {r, u, f}, {0, 0, 0}, 0
+#define HAZE 0.04
+#define LEVEL 1.8
+
+/* The camera stands at (0.2, 1.5, 4) and sees 60 degrees: on the screen |up| < 0.577 forward, |right| < 0.770 forward. */
+const stock stock_list[] = {
+    {"sun ahead", SUN(-0.1, 0.35, 1), HAZE, LEVEL},
+    {"sun in the corner of the view", SUN(0.65, 0.5, 1), HAZE, LEVEL},
+    {"sun on the left border", SUN(-0.7698003589195010, 0.3, 1), HAZE, LEVEL},
+    {"sun in the upper right corner", SUN(0.7698003589195010, 0.5773502691896258, 1), HAZE, LEVEL},
+    {"sun off the left", SUN(-1, 0.35, 0.35), HAZE, LEVEL},
+    {"sun off the right", SUN(1, 0.3, 0.4), HAZE, LEVEL},
+    {"sun off the top", SUN(0.1, 1, 0.5), HAZE, LEVEL},
+    {"sun off the bottom", SUN(0.15, -0.7, 1), HAZE, 14},
+    {"sun behind the camera", SUN(0.2, 0.3, -1), HAZE, LEVEL},
+    {"sun off behind the left", SUN(-1, 0.5, -0.4), HAZE, LEVEL},
+    {"sun parallel to the picture", SUN(1, 0.4, 0), HAZE, LEVEL},
+    {"sun almost parallel to it", SUN(-1, 0.4, -1e-5), HAZE, LEVEL},
+    {"thin air", SUN(-0.6, 0.5, 0.5), 1e-4, LEVEL},
+    {"thick air", SUN(-0.6, 0.5, 0.5), 2.0, LEVEL},
+    {"clear air", SUN(-0.6, 0.5, 0.5), 0.0, LEVEL},
+    {"lamp in view", ORACLE_SPOT, {-0.5, 2.6, -7}, {0.3, 0.5, 0}, 70, HAZE, LEVEL},
+    {"lamp off the left", ORACLE_SPOT, {-6, 3.5, -3}, {1, 1, -5}, 50, HAZE, LEVEL},
+    {"lamp above", ORACLE_SPOT, {0.5, 8, -3.5}, {0.4, 0, -4.5}, 60, HAZE, LEVEL},
+    {"lamp behind the camera", ORACLE_SPOT, {2, 3, 7}, {0, 1, -5}, 60, HAZE, LEVEL},
+    {"lamp behind, on the axis", ORACLE_SPOT, {0.24, 1.44, 6}, {0, 1.8, -6}, 50, HAZE, LEVEL},
+    {"lamp shining away", ORACLE_SPOT, {-2, 2, -3}, {-1, 1.5, -12}, 60, HAZE, LEVEL},
+    {"lamp in thick air", ORACLE_SPOT, {-3, 4, -6}, {1, 0, -2}, 60, 0.6, LEVEL},
+};
+const int stock_count = (int)(sizeof stock_list / sizeof *stock_list);
+
+static oracle_scene *make(const stock *s, int width, int height)
+{
+    const double a[3] = {-3, 0.5, -9}, b[3] = {2, 3.5, -8}, c[3] = {-3, 2.5, -5};
+    oracle_scene *scene = model_new(width, height);
+    const oracle_camera *camera;
+    double way[3];
+    if (!scene)
+        return NULL;
+    model_camera(scene, 0.2, 1.5, 4, 0, s->pitch, -6, 60, 0.1, 40);
+    model_box(scene, -40, -1, -40, 40, 0, 40, 0.5);
+    for (int i = -3; i <= 3; i++)
+        model_box(scene, i * 1.1, 0, -5, i * 1.1 + 0.3, 3, -4.6, 0.4);
+    model_box(scene, -4, 3, -5.2, 4, 3.4, -4.4, 0.6);
+    model_box(scene, -4.2, 0, -2, -3.4, 1.2, -1.2, 0.3);
+    model_quad(scene, a, b, c, 0.5);
+    if (s->air > 0) {
+        model_medium(scene, s->air, 0.05 * s->air, 1.3, TYN_PHASE_HG, 0.5);
+        model_medium(scene, 0.5 * s->air, 0, 2.0, TYN_PHASE_RAYLEIGH, 0);
+    }
+    for (int k = 0; k < 3; k++) {
+        scene->background[k] = 0.2 + 0.1 * k;
+        scene->ambient[k] = 0.2;
+    }
+    if (s->kind == ORACLE_SPOT) {
+        model_spot(scene, s->light[0], s->light[1], s->light[2], s->target[0], s->target[1], s->target[2], s->angle, 120);
+        return scene;
+    }
+    camera = &scene->camera;
+    for (int k = 0; k < 3; k++)
+        way[k] = s->light[0] * camera->right[k] + s->light[1] * camera->up[k] + s->light[2] * camera->forward[k];
+    model_sun(scene, -way[0], -way[1], -way[2], 8);
+    return scene;
+}
+
+oracle_scene *stock_new(const char *name, int width, int height)
+{
+    for (int i = 0; i < stock_count; i++)
+        if (strcmp(stock_list[i].name, name) == 0)
+            return make(&stock_list[i], width, height);
+    return NULL;
+}

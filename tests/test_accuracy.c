@@ -1,0 +1,191 @@
+/* test_accuracy.c - the methods against the oracle, and against the library's own exact march of the same shadow map. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "rig.h"
+#include "stock.h"
+#include "test.h"
+
+#define WIDTH 128 /* 4 : 3, as stock.c's borders are */
+#define HEIGHT 96
+#define SHADOW 1024
+
+/* A method, and the relative L1 of L_scat that it may have: for a scene, and over all. Measured, plus a quarter. */
+typedef struct way {
+    const char *name;
+    tyn_method method;
+    tyn_rays rays;
+    double worst, mean;
+    double sum;
+    int count;
+} way;
+
+static way ways[] = {
+    {"march", TYN_METHOD_MARCH, TYN_RAYS_WORDS, 0.0035, 0.0010, 0, 0},
+    {"march in steps", TYN_METHOD_MARCH, TYN_RAYS_STEPS, 0.0210, 0.0027, 0, 0},
+    {"epipolar", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, 0.0100, 0.0030, 0, 0},
+    {"epipolar in steps", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, 0.0210, 0.0043, 0, 0},
+    {"subsample", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, 0.0320, 0.0055, 0, 0},
+};
+enum { WAYS = (int)(sizeof ways / sizeof *ways) };
+
+static int finite_picture(const float *v, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!(v[i] >= 0.0f && v[i] <= 3.4e38f))
+            return 0;
+    return 1;
+}
+
+static void check_scene(const stock *s, int say)
+{
+    static float truth[3 * WIDTH * HEIGHT];
+    static uint8_t exact[4 * WIDTH * HEIGHT];
+    const size_t pixels = (size_t)WIDTH * HEIGHT;
+    oracle_scene *scene = stock_new(s->name, WIDTH, HEIGHT);
+    rig *r = scene ? rig_new(scene, SHADOW) : NULL;
+    double light = 0;
+    test_begin(s->name);
+    CHECK(r && oracle_prepare(scene));
+    if (!r || !scene->scratch)
+        goto done;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        oracle_pixel pixel;
+        oracle_trace(scene, i % WIDTH + 0.5, i / WIDTH + 0.5, &pixel);
+        for (int k = 0; k < 3; k++) {
+            truth[3 * i + k] = (float)pixel.scatter[k];
+            light += pixel.scatter[k];
+        }
+    }
+    CHECK(s->air > 0 ? light > 0 : light == 0);
+    for (int i = 0; i < WAYS; i++) {
+        way *w = &ways[i];
+        tyn_config config = rig_config(r, w->method, w->rays);
+        tyn_frame frame = rig_frame(r);
+        double gap;
+        config.steps = 200;
+        memset(r->scatter, 0xff, pixels * 3 * sizeof *r->scatter);
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK(finite_picture(r->scatter, 3 * pixels));
+        gap = rig_l1(r->scatter, truth, 3 * pixels);
+        if (say)
+            printf("  %-30s %-18s L1 %.4f, rays %.1f %%\n", s->name, w->name, gap, (double)r->stats.rays_percent);
+        CHECK_NEAR(gap, 0, w->worst);
+        w->sum += gap;
+        w->count++;
+        if (i == 0)
+            memcpy(exact, r->target, sizeof exact);
+        if (w->method == TYN_METHOD_EPIPOLAR && w->rays == TYN_RAYS_WORDS) {
+            double psnr = rig_psnr(r->target, exact, pixels);
+            if (say)
+                printf("  %-30s %-18s %.1f dB to the march\n", s->name, w->name, psnr);
+            CHECK(psnr > 51);
+        }
+    }
+done:
+    rig_free(r);
+    model_free(scene);
+}
+
+/* Where the truth is infinite the picture must still be a picture. */
+static void check_lamp_at_camera(void)
+{
+    oracle_scene *scene = stock_new("lamp behind the camera", 64, 48);
+    rig *r;
+    TEST("lamp at the camera");
+    memcpy(scene->light[0].position, scene->camera.position, sizeof scene->camera.position);
+    memcpy(scene->light[0].direction, scene->camera.forward, sizeof scene->camera.forward);
+    r = rig_new(scene, 256);
+    CHECK(r != NULL);
+    for (int i = 0; r && i < WAYS; i++) {
+        tyn_config config = rig_config(r, ways[i].method, ways[i].rays);
+        tyn_frame frame = rig_frame(r);
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK(finite_picture(r->scatter, 3 * 64 * 48));
+    }
+    rig_free(r);
+    model_free(scene);
+}
+
+/* Two lights are the sum of each alone. */
+static void check_two_lights(void)
+{
+    const size_t count = 3 * 64 * 48;
+    oracle_scene *scene = stock_new("sun off the left", 64, 48);
+    float *sum = calloc(count, sizeof *sum);
+    rig *r;
+    TEST("two lights add up");
+    model_spot(scene, 0.5, 8, -3.5, 0.4, 0, -4.5, 60, 120);
+    r = rig_new(scene, 512);
+    CHECK(r && sum);
+    for (int i = 0; r && sum && i < WAYS; i++) {
+        tyn_config config = rig_config(r, ways[i].method, ways[i].rays);
+        tyn_frame frame = rig_frame(r);
+        memset(sum, 0, count * sizeof *sum);
+        for (int l = 0; l < 2; l++) {
+            frame.lights = &r->light[l];
+            frame.light_count = 1;
+            CHECK(rig_render(r, &config, &frame) == TYN_OK);
+            for (size_t n = 0; n < count; n++)
+                sum[n] += r->scatter[n];
+        }
+        frame = rig_frame(r);
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK_NEAR(rig_l1(r->scatter, sum, count), 0, 1e-5);
+    }
+    free(sum);
+    rig_free(r);
+    model_free(scene);
+}
+
+/* Clear air leaves a float picture alone, bit by bit, and an 8-bit one too. */
+static void check_clear(void)
+{
+    const size_t pixels = 64 * 48;
+    oracle_scene *scene = stock_new("clear air", 64, 48);
+    rig *r = rig_new(scene, 256);
+    TEST("clear air leaves the picture as it is");
+    CHECK(r != NULL);
+    for (int i = 0; r && i < WAYS; i++) {
+        tyn_config config = rig_config(r, ways[i].method, ways[i].rays);
+        tyn_frame frame = rig_frame(r);
+        float *out = calloc(pixels, 3 * sizeof *out);
+        uint8_t *bytes = malloc(4 * pixels);
+        CHECK(out && bytes);
+        if (out && bytes) {
+            frame.target.pixels = out;
+            frame.target.format = TYN_RGB_F32;
+            CHECK(rig_render(r, &config, &frame) == TYN_OK);
+            CHECK(memcmp(out, r->colour, pixels * 3 * sizeof *out) == 0);
+            for (size_t n = 0; n < 4 * pixels; n++)
+                bytes[n] = n % 4 == 3 ? 255 : (uint8_t)test_random();
+            memcpy(r->target, bytes, 4 * pixels);
+            frame = rig_frame(r);
+            frame.colour = frame.target; /* in place */
+            frame.display.tone = TYN_TONE_CLAMP;
+            CHECK(rig_render(r, &config, &frame) == TYN_OK);
+            CHECK(memcmp(bytes, r->target, 4 * pixels) == 0);
+        }
+        free(out);
+        free(bytes);
+    }
+    rig_free(r);
+    model_free(scene);
+}
+
+void test_accuracy(void)
+{
+    int say = getenv("TYN_SAY") != NULL;
+    for (int i = 0; i < stock_count; i++)
+        check_scene(&stock_list[i], say);
+    check_lamp_at_camera();
+    check_two_lights();
+    check_clear();
+    TEST("mean error over all scenes");
+    for (int i = 0; i < WAYS; i++) {
+        printf("  %-18s mean relative L1 %.4f\n", ways[i].name, ways[i].sum / ways[i].count);
+        CHECK_NEAR(ways[i].sum / ways[i].count, 0, ways[i].mean);
+    }
+}

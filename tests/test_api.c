@@ -1,0 +1,388 @@
+/* test_api.c - every public call at its door: each status is reached, nothing is written with it, and bands stay whole. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "guard.h"
+#include "rig.h"
+#include "stock.h"
+#include "test.h"
+
+#define BIG_NAN ((float)NAN)
+#define BIG_INF ((float)INFINITY)
+
+/* ---- small calls ---------------------------------------------------------------------------------------------------- */
+
+static void test_names(void)
+{
+    static const char *const names[] = {"TYN_OK",        "TYN_E_NULL",   "TYN_E_CONFIG",  "TYN_E_MEMORY", "TYN_E_ALIGN",
+                                        "TYN_E_IMAGE",   "TYN_E_CAMERA", "TYN_E_LIGHT",   "TYN_E_MEDIUM", "TYN_E_MESH",
+                                        "TYN_E_DISPLAY", "TYN_E_LIMIT",  "TYN_E_EXECUTOR"};
+    static const int32_t bytes[] = {0, 12, 4, 4, 2, 4, 3, 6, 1, 0};
+    TEST("names, version, bytes of a pixel");
+    for (int i = 0; i < 13; i++)
+        CHECK(strcmp(tyn_status_name((tyn_status)-i), names[i]) == 0);
+    CHECK(strcmp(tyn_status_name((tyn_status)-13), "TYN_E_UNKNOWN") == 0);
+    CHECK(strcmp(tyn_status_name((tyn_status)1), "TYN_E_UNKNOWN") == 0);
+    CHECK(strcmp(tyn_status_name((tyn_status)-1000000), "TYN_E_UNKNOWN") == 0);
+    CHECK(strcmp(tyn_version(), TYN_VERSION) == 0);
+    for (int i = 0; i < 10; i++)
+        CHECK(tyn_format_bytes((tyn_format)i) == bytes[i]);
+    CHECK(tyn_format_bytes((tyn_format)-1) == 0);
+}
+
+static void test_camera(void)
+{
+    const float from[3] = {1, 2, 3}, to[3] = {4, 3, -6}, up[3] = {0, 2, 0}, skew[3] = {3, 1, -9}, not_a[3] = {0, BIG_NAN, 0};
+    tyn_camera camera, before;
+    double forward = 0, right = 0;
+    TEST("tyn_camera_look");
+    memset(&camera, 0x5a, sizeof camera);
+    before = camera;
+#define REFUSED(status, ...)                                                                                                   \
+    do {                                                                                                                       \
+        CHECK(tyn_camera_look(__VA_ARGS__) == (status));                                                                       \
+        CHECK(memcmp(&camera, &before, sizeof camera) == 0);                                                                   \
+    } while (0)
+    REFUSED(TYN_E_NULL, NULL, from, to, up, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_NULL, &camera, NULL, to, up, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_NULL, &camera, from, NULL, up, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_NULL, &camera, from, to, NULL, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, from, up, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, skew, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, not_a, to, up, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, not_a, up, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, not_a, 1, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 0, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 3.1416f, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, BIG_NAN, 1, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 1, 0, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 1, 2, 2, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 1, 1, BIG_INF, 4, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 1, 1, 2, 0, 3);
+    REFUSED(TYN_E_CAMERA, &camera, from, to, up, 1, 1, 2, 4, -3);
+#undef REFUSED
+    CHECK(tyn_camera_look(&camera, from, to, up, 1.2f, 0.5f, 70, 640, 480) == TYN_OK);
+    CHECK_NEAR(camera.top_edge, tan(0.6), 1e-6);
+    CHECK_NEAR(camera.right_edge, tan(0.6) * 640 / 480, 1e-6);
+    CHECK(camera.left_edge == -camera.right_edge && camera.bottom_edge == -camera.top_edge);
+    CHECK(camera.near_depth == 0.5f && camera.far_depth == 70 && memcmp(camera.position, from, sizeof from) == 0);
+    for (int k = 0; k < 3; k++) {
+        forward += (double)camera.forward[k] * (double)(to[k] - from[k]);
+        right += (double)camera.right[k] * (double)(to[k] - from[k]);
+    }
+    CHECK_NEAR(forward, sqrt(9 + 1 + 81), 1e-4);
+    CHECK_NEAR(right, 0, 1e-4);
+    CHECK_NEAR(camera.right[1], 0, 1e-6);
+    CHECK(camera.up[1] > 0 && camera.right[0] > 0);
+}
+
+static void test_air(void)
+{
+    tyn_medium media[2], before[2];
+    TEST("tyn_medium_air");
+    memset(media, 0x5a, sizeof media);
+    memcpy(before, media, sizeof media);
+    CHECK(tyn_medium_air(NULL, 1) == TYN_E_NULL);
+    CHECK(tyn_medium_air(media, -1) == TYN_E_MEDIUM);
+    CHECK(tyn_medium_air(media, BIG_NAN) == TYN_E_MEDIUM);
+    CHECK(tyn_medium_air(media, BIG_INF) == TYN_E_MEDIUM);
+    CHECK(memcmp(before, media, sizeof media) == 0);
+    CHECK(tyn_medium_air(media, 10) == TYN_OK);
+    CHECK_NEAR(media[0].scatter[2], 33.1e-5, 1e-9);
+    CHECK(media[0].phase == TYN_PHASE_RAYLEIGH && media[1].phase == TYN_PHASE_HG && media[1].g == 0.76f);
+    CHECK_NEAR(media[1].scatter[0], 2e-4, 1e-9);
+}
+
+static void test_fit(void)
+{
+    const float low[3] = {-5, 0, -9}, high[3] = {5, 4, 2}, bad[3] = {0, BIG_INF, 0};
+    const float from[3] = {0, 1, 8}, to[3] = {0, 1, 0}, up[3] = {0, 1, 0};
+    tyn_camera camera, wrong;
+    tyn_light light, before;
+    TEST("tyn_shadow_fit");
+    CHECK(tyn_camera_look(&camera, from, to, up, 1, 0.1f, 50, 64, 48) == TYN_OK);
+    wrong = camera;
+    wrong.up[1] = 0.5f;
+    memset(&light, 0, sizeof light);
+    light.direction[1] = -1;
+    light.colour[0] = 1;
+    light.shadow.matrix[7] = 123;
+    before = light;
+    CHECK(tyn_shadow_fit(NULL, &camera, low, high) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit(&light, NULL, low, high) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit(&light, &camera, low, NULL) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit(&light, &camera, NULL, high) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit(&light, &wrong, low, high) == TYN_E_CAMERA);
+    CHECK(tyn_shadow_fit(&light, &camera, high, low) == TYN_E_MESH);
+    CHECK(tyn_shadow_fit(&light, &camera, low, bad) == TYN_E_MESH);
+    CHECK(memcmp(&light, &before, sizeof light) == 0);
+    light.direction[1] = -2;
+    before = light;
+    CHECK(tyn_shadow_fit(&light, &camera, low, high) == TYN_E_LIGHT);
+    CHECK(memcmp(&light, &before, sizeof light) == 0);
+    light.kind = TYN_LIGHT_SPOT;
+    light.direction[1] = -1;
+    light.angle = 3.0f;
+    before = light;
+    CHECK(tyn_shadow_fit(&light, &camera, low, high) == TYN_E_LIGHT);
+    CHECK(memcmp(&light, &before, sizeof light) == 0);
+    for (int kind = 0; kind < 2; kind++)
+        for (int bounds = 0; bounds < 2; bounds++) {
+            float *m = light.shadow.matrix;
+            light.kind = (tyn_light_kind)kind;
+            light.angle = 1.0f;
+            light.position[1] = 9;
+            memset(m, 0, sizeof light.shadow.matrix);
+            before = light;
+            CHECK(tyn_shadow_fit(&light, &camera, bounds ? low : NULL, bounds ? high : NULL) == TYN_OK);
+            /* the ground before the camera is in the map, in front of the light, and darker than what hangs above it */
+            for (int i = 0; i < 20; i++) {
+                float x = test_random_float(-1, 1), z = test_random_float(-2, 2);
+                float W = m[12] * x + m[14] * z + m[15], Z = m[8] * x + m[10] * z + m[11];
+                float u = (m[0] * x + m[2] * z + m[3]) / W, v = (m[4] * x + m[6] * z + m[7]) / W;
+                float higher = (Z + m[9]) / (W + m[13]);
+                CHECK(W > 0 && u > 0 && u < 1 && v > 0 && v < 1);
+                CHECK(Z / W >= 0 && Z / W <= 1 && higher > Z / W);
+            }
+            memcpy(before.shadow.matrix, m, sizeof before.shadow.matrix);
+            CHECK(memcmp(&before, &light, sizeof light) == 0);
+        }
+}
+
+/* ---- configs and memory --------------------------------------------------------------------------------------------- */
+
+/* The macro's sum, which must be tyn_measure's. */
+static size_t memory_of(const tyn_config *c)
+{
+    size_t width = (size_t)c->width, height = (size_t)c->height, slices = (size_t)c->slices, samples = (size_t)c->samples;
+    size_t shadow = (size_t)c->shadow_size, lights = (size_t)c->lights, workers = (size_t)c->workers;
+    return TYN_MEMORY(width, height, slices, samples, shadow, lights, workers);
+}
+
+static void test_preset(void)
+{
+    tyn_config config, before;
+    TEST("tyn_config_preset");
+    memset(&config, 0x5a, sizeof config);
+    before = config;
+    CHECK(tyn_config_preset(NULL, TYN_PRESET_QUALITY, 64, 48) == TYN_E_NULL);
+    CHECK(tyn_config_preset(&config, (tyn_preset)4, 64, 48) == TYN_E_CONFIG);
+    CHECK(tyn_config_preset(&config, (tyn_preset)-1, 64, 48) == TYN_E_CONFIG);
+    CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, 0, 48) == TYN_E_CONFIG);
+    CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, 64, -1) == TYN_E_CONFIG);
+    CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, TYN_MAX_SIZE + 1, 48) == TYN_E_CONFIG);
+    CHECK(memcmp(&config, &before, sizeof config) == 0);
+    for (int preset = 0; preset < 4; preset++) {
+        static const int32_t sizes[][2] = {{1, 1}, {320, 240}, {1920, 1080}, {3, 4000}};
+        for (int i = 0; i < 4; i++) {
+            size_t bytes = 0;
+            CHECK(tyn_config_preset(&config, (tyn_preset)preset, sizes[i][0], sizes[i][1]) == TYN_OK);
+            CHECK(config.width == sizes[i][0] && config.height == sizes[i][1]);
+            CHECK(tyn_measure(&config, &bytes) == TYN_OK);
+            CHECK(memory_of(&config) == bytes);
+            config.lights = 3;
+            config.workers = 5;
+            CHECK(tyn_measure(&config, &bytes) == TYN_OK && memory_of(&config) == bytes);
+        }
+    }
+    CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, 1920, 1080) == TYN_OK);
+    CHECK(memory_of(&config) <= 10u << 20);
+    CHECK(tyn_config_preset(&config, TYN_PRESET_HANDHELD, 320, 240) == TYN_OK);
+    CHECK(memory_of(&config) <= 64u << 10);
+}
+
+/* Every field out of its range, below and above. */
+static void test_ranges(void)
+{
+    static const struct {
+        size_t offset;
+        int32_t bad[4];
+    } fields[] = {{offsetof(tyn_config, width), {0, -1, TYN_MAX_SIZE + 1, INT32_MIN}},
+                  {offsetof(tyn_config, height), {0, -1, TYN_MAX_SIZE + 1, INT32_MAX}},
+                  {offsetof(tyn_config, slices), {-1, 1, 65537, INT32_MIN}},
+                  {offsetof(tyn_config, samples), {-1, 1, 65537, INT32_MAX}},
+                  {offsetof(tyn_config, initial_step), {-1, 3, 65, 128}},
+                  {offsetof(tyn_config, shadow_size), {-1, TYN_MAX_SHADOW + 1, INT32_MAX, INT32_MIN}},
+                  {offsetof(tyn_config, steps), {-1, 4097, INT32_MAX, INT32_MIN}},
+                  {offsetof(tyn_config, method), {-1, 4, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, rays), {-1, 2, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, lights), {-1, TYN_MAX_LIGHTS + 1, INT32_MAX, INT32_MIN}},
+                  {offsetof(tyn_config, workers), {-1, TYN_MAX_WORKERS + 1, INT32_MAX, INT32_MIN}}};
+    static const float breaks[] = {-0.1f, 1.01f, BIG_NAN, BIG_INF};
+    tyn_config good, config;
+    size_t bytes = 77, need;
+    tyn_context *context = NULL;
+    uint8_t *block;
+    TEST("tyn_measure and tyn_init refuse");
+    memset(&good, 0, sizeof good);
+    good.width = 33;
+    good.height = 20;
+    CHECK(tyn_measure(&good, &need) == TYN_OK && need > 0 && need % TYN_ALIGNMENT == 0);
+    block = rig_block(need + TYN_ALIGNMENT);
+    CHECK(block != NULL);
+    if (!block)
+        return;
+    memset(block, 0x5a, need + TYN_ALIGNMENT);
+    for (size_t f = 0; f < sizeof fields / sizeof *fields; f++)
+        for (int i = 0; i < 4; i++) {
+            config = good;
+            memcpy((char *)&config + fields[f].offset, &fields[f].bad[i], sizeof(int32_t));
+            CHECK(tyn_measure(&config, &bytes) == TYN_E_CONFIG && bytes == 77);
+            CHECK(tyn_init(&context, &config, block, need) == TYN_E_CONFIG);
+        }
+    for (int i = 0; i < 4; i++) {
+        config = good;
+        config.break_threshold = breaks[i];
+        CHECK(tyn_measure(&config, &bytes) == TYN_E_CONFIG && bytes == 77);
+    }
+    CHECK(tyn_measure(NULL, &bytes) == TYN_E_NULL && bytes == 77);
+    CHECK(tyn_measure(&good, NULL) == TYN_E_NULL);
+    CHECK(tyn_init(NULL, &good, block, need) == TYN_E_NULL);
+    CHECK(tyn_init(&context, NULL, block, need) == TYN_E_NULL);
+    CHECK(tyn_init(&context, &good, NULL, need) == TYN_E_NULL);
+    CHECK(tyn_init(&context, &good, block, need - 1) == TYN_E_MEMORY);
+    CHECK(tyn_init(&context, &good, block, 0) == TYN_E_MEMORY);
+    CHECK(tyn_init(&context, &good, block + 32, need) == TYN_E_ALIGN);
+    CHECK(tyn_init(&context, &good, block + 1, need) == TYN_E_ALIGN);
+    CHECK(context == NULL);
+    for (size_t i = 0; i < need + TYN_ALIGNMENT; i++)
+        CHECK(block[i] == 0x5a);
+    CHECK(tyn_init(&context, &good, block, need) == TYN_OK && (void *)context == (void *)block);
+    for (size_t i = need; i < need + TYN_ALIGNMENT; i++)
+        CHECK(block[i] == 0x5a);
+    free(block);
+}
+
+/* ---- tyn_encode ----------------------------------------------------------------------------------------------------- */
+
+static void test_encode(void)
+{
+    float linear[3 * 12] = {0};
+    guard target = guard_new(4, 3, TYN_RGBA8_SRGB, 0);
+    tyn_image from = {linear, 4, 3, 0, TYN_RGB_F32}, image, to;
+    tyn_display display = {1, TYN_TONE_CLAMP, 0}, odd;
+    TEST("tyn_encode refuses");
+#define REFUSED(status, a, b, c) CHECK(tyn_encode(a, b, c) == (status) && guard_untouched(&target))
+    to = target.image;
+    REFUSED(TYN_E_NULL, NULL, &display, &to);
+    REFUSED(TYN_E_NULL, &from, NULL, &to);
+    REFUSED(TYN_E_NULL, &from, &display, NULL);
+    image = from, image.pixels = NULL;
+    REFUSED(TYN_E_NULL, &image, &display, &to);
+    image = from, image.width = 3;
+    REFUSED(TYN_E_IMAGE, &image, &display, &to);
+    image = from, image.height = 0;
+    REFUSED(TYN_E_IMAGE, &image, &display, &to);
+    image = from, image.format = TYN_DEPTH_F32;
+    REFUSED(TYN_E_IMAGE, &image, &display, &to);
+    image = from, image.stride = 44;
+    REFUSED(TYN_E_IMAGE, &image, &display, &to);
+    image = from, image.stride = 49;
+    REFUSED(TYN_E_ALIGN, &image, &display, &to);
+    image = from, image.pixels = (char *)linear + 2;
+    REFUSED(TYN_E_ALIGN, &image, &display, &to);
+    image = to, image.format = TYN_DEPTH_F32;
+    REFUSED(TYN_E_IMAGE, &from, &display, &image);
+    image = to, image.format = TYN_RGB8_LINEAR;
+    REFUSED(TYN_E_IMAGE, &from, &display, &image);
+    image = to, image.format = (tyn_format)99;
+    REFUSED(TYN_E_IMAGE, &from, &display, &image);
+    image = to, image.width = TYN_MAX_SIZE + 1;
+    REFUSED(TYN_E_IMAGE, &from, &display, &image);
+    image = to, image.stride = -15;
+    REFUSED(TYN_E_IMAGE, &from, &display, &image);
+    odd = display, odd.exposure = -1;
+    REFUSED(TYN_E_DISPLAY, &from, &odd, &to);
+    odd = display, odd.exposure = BIG_NAN;
+    REFUSED(TYN_E_DISPLAY, &from, &odd, &to);
+    odd = display, odd.tone = (tyn_tone)2;
+    REFUSED(TYN_E_DISPLAY, &from, &odd, &to);
+#undef REFUSED
+    guard_free(&target);
+}
+
+static double srgb(double x)
+{
+    x = x < 0 ? 0 : x > 1 ? 1 : x;
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+}
+
+/* Values through every format, size, stride and tone curve, against the definition in double. */
+static void test_encode_values(void)
+{
+    static const int32_t sizes[][2] = {{1, 1}, {2, 1}, {1, 5}, {33, 7}, {67, 3}};
+    static const tyn_format formats[] = {TYN_RGB_F32, TYN_RGBA8_SRGB, TYN_BGRA8_SRGB, TYN_RGB565_SRGB};
+    TEST("tyn_encode writes what the formats say, and only there");
+    for (int s = 0; s < 5; s++)
+        for (int f = 0; f < 4; f++)
+            for (int variant = 0; variant < 8; variant++) {
+                int32_t w = sizes[s][0], h = sizes[s][1];
+                float linear[3 * 33 * 7];
+                tyn_image from = {linear, w, h, 0, TYN_RGB_F32};
+                tyn_display display = {variant & 1 ? 1.5f : 0.0f, variant & 2 ? TYN_TONE_FILM : TYN_TONE_CLAMP, 0};
+                guard to = guard_new(w, h, formats[f], variant & 4);
+                double exposure = variant & 1 ? 1.5 : 1.0;
+                for (int i = 0; i < 3 * w * h; i++)
+                    linear[i] = test_random() & 3 ? test_random_float(0, 1.2f) : test_random_float(0, 0.01f);
+                CHECK(tyn_encode(&from, &display, &to.image) == TYN_OK);
+                CHECK(guard_intact(&to));
+                for (int i = 0; i < w * h; i++) {
+                    const uint8_t *at =
+                        (const uint8_t *)to.image.pixels + (i / w) * to.image.stride + (i % w) * tyn_format_bytes(formats[f]);
+                    uint16_t word;
+                    memcpy(&word, at, sizeof word);
+                    for (int k = 0; k < 3; k++) {
+                        double x = (double)linear[3 * i + k] * exposure, shown = srgb(display.tone ? 1 - exp(-x) : x);
+                        float got;
+                        if (formats[f] == TYN_RGB_F32) {
+                            memcpy(&got, at + 4 * k, sizeof got);
+                            CHECK_NEAR(got, x, 1e-6 * x);
+                        } else if (formats[f] == TYN_RGB565_SRGB) {
+                            int top = k == 1 ? 63 : 31, step = word >> (k == 0 ? 11 : k == 1 ? 5 : 0) & top;
+                            CHECK_NEAR(step, shown * top, 0.52);
+                        } else {
+                            CHECK_NEAR(at[formats[f] == TYN_BGRA8_SRGB ? 2 - k : k], shown * 255, 0.52);
+                        }
+                    }
+                    if (formats[f] == TYN_RGBA8_SRGB || formats[f] == TYN_BGRA8_SRGB)
+                        CHECK(at[3] == 255);
+                }
+                guard_free(&to);
+            }
+}
+
+/* On a flat field the mean of a dithered block of 8x8 is the value itself, and no pixel is more than a step away. */
+static void test_dither(void)
+{
+    TEST("dither keeps the mean");
+    for (int n = 0; n < 40; n++) {
+        float linear[3 * 64], value = test_random_float(0.01f, 0.9f);
+        uint8_t bytes[4 * 64];
+        tyn_image from = {linear, 8, 8, 0, TYN_RGB_F32}, to = {bytes, 8, 8, 0, TYN_RGBA8_SRGB};
+        tyn_display display = {1, TYN_TONE_CLAMP, 1};
+        double sum = 0, shown = 255 * srgb((double)value);
+        for (int i = 0; i < 3 * 64; i++)
+            linear[i] = value;
+        CHECK(tyn_encode(&from, &display, &to) == TYN_OK);
+        for (int i = 0; i < 64; i++) {
+            sum += bytes[4 * i] / 64.0;
+            CHECK_NEAR(bytes[4 * i], shown, 1.02);
+        }
+        CHECK_NEAR(sum, shown, 0.05);
+    }
+}
+
+void test_api(void)
+{
+    test_names();
+    test_camera();
+    test_air();
+    test_fit();
+    test_preset();
+    test_ranges();
+    test_encode();
+    test_encode_values();
+    test_dither();
+}
