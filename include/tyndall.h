@@ -238,7 +238,7 @@ typedef struct tyn_config {
     int32_t slices;        /* epipolar slices, 8 .. 65536; 0: as TYN_PRESET_QUALITY */
     int32_t samples;       /* samples along a slice, at most: one per pixel column (row), each 2nd, 4th ... so that they
                               fit; 2 .. 65536; 0: all */
-    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: 16 */
+    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: by size, 16 at 1920 */
     float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
     int32_t shadow_size;   /* largest shadow map of a frame, texels, 1 .. TYN_MAX_SHADOW; 0: 2048 */
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */

@@ -15,8 +15,8 @@ typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
 tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t width, int32_t height)
 {
     static const struct {
-        int32_t divisor, most, samples, step, shadow;
-    } table[] = {{8, 256, 2, 16, 256}, {4, 512, 2, 16, 1024}, {1, 1024, 1, 16, 2048}, {1, 4096, 1, 4, 4096}};
+        int32_t divisor, most, samples, rays, shadow;
+    } table[] = {{8, 256, 2, 16, 256}, {4, 512, 2, 64, 1024}, {1, 1024, 1, 96, 2048}, {1, 4096, 1, 384, 4096}};
     int32_t longer = tyni_maxi(width, height);
     if (!config)
         return TYN_E_NULL;
@@ -27,7 +27,10 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->height = height;
     config->slices = tyni_clampi((width + height) / table[preset].divisor, 16, table[preset].most);
     config->samples = tyni_maxi((longer + table[preset].samples - 1) / table[preset].samples, 2);
-    config->initial_step = table[preset].step;
+    /* as many initial rays on a line whatever the size of the picture: what is between two of them looks the same */
+    config->initial_step = 1;
+    while (config->initial_step < 16 && 2 * config->initial_step * table[preset].rays <= config->samples)
+        config->initial_step *= 2;
     config->break_threshold = 0.06f;
     config->shadow_size = table[preset].shadow;
     config->steps = 150;
