@@ -113,25 +113,49 @@ static int make_raster(work *w)
     return status == TYN_OK ? 0 : fail(w, 0, "rasterizer", status);
 }
 
+static int draw_surface(work *w, const char *stage, void *colour, int32_t light_count)
+{
+    uint64_t start = clock_now(NULL);
+    tyn_surface f;
+    tyn_status status;
+    progress_stage(stage);
+    memset(&f, 0, sizeof f);
+    f.camera = w->camera;
+    f.meshes = w->s->meshes;
+    f.mesh_count = w->s->mesh_count;
+    f.lights = light_count ? w->lights : NULL;
+    f.light_count = light_count;
+    f.media = w->s->medium_count ? w->s->media : NULL;
+    f.medium_count = w->s->medium_count;
+    memcpy(f.ambient, w->s->ambient, sizeof f.ambient);
+    memcpy(f.background, w->s->background, sizeof f.background);
+    f.colour = image_of(w, colour, TYN_RGB_F32);
+    f.depth = image_of(w, w->out->depth, TYN_DEPTH_F32);
+    f.executor = pool_executor(w->threads);
+    status = tyn_raster_surface(w->raster, &f);
+    w->out->times.surface_ns += clock_now(NULL) - start;
+    return status == TYN_OK ? 0 : fail(w, 0, stage, status);
+}
+
+/* After the depth is known: a map that covers just what is seen makes the best of its texels. */
 static int draw_shadows(work *w)
 {
-    float min[3], max[3];
-    int bounded = scene_bounds(w->s, min, max);
     size_t texels = (size_t)w->config.shadow_size * (size_t)w->config.shadow_size;
+    tyn_image depth = image_of(w, w->out->depth, TYN_DEPTH_F32);
     uint64_t start = clock_now(NULL);
     progress_stage("shadow maps");
     for (int32_t i = 0; i < w->s->light_count; i++) {
         tyn_light *l = &w->lights[i];
         tyn_status status;
         *l = w->s->lights[i].light;
-        status = tyn_shadow_fit(l, &w->camera, bounded ? min : NULL, bounded ? max : NULL);
+        l->shadow.size = w->config.shadow_size;
+        status = tyn_shadow_fit_scene(l, &w->camera, &depth, w->s->meshes, w->s->mesh_count);
         if (status != TYN_OK)
             return fail(w, w->s->lights[i].line, "light", status);
         w->maps[i] = texels < SIZE_MAX / sizeof(float) ? malloc(texels * sizeof(float)) : NULL;
         if (!w->maps[i])
             return error_memory(w->error);
         w->out->shadow_bytes += texels * sizeof(float);
-        l->shadow.size = w->config.shadow_size;
         status = tyn_raster_shadow(w->raster, &l->shadow, w->maps[i], w->s->meshes, w->s->mesh_count, pool_executor(w->threads),
                                    NULL, NULL, NULL);
         if (status != TYN_OK)
@@ -140,30 +164,6 @@ static int draw_shadows(work *w)
     }
     w->out->times.shadow_ns = clock_now(NULL) - start;
     return 0;
-}
-
-static int draw_surface(work *w)
-{
-    uint64_t start = clock_now(NULL);
-    tyn_surface f;
-    tyn_status status;
-    progress_stage("surfaces");
-    memset(&f, 0, sizeof f);
-    f.camera = w->camera;
-    f.meshes = w->s->meshes;
-    f.mesh_count = w->s->mesh_count;
-    f.lights = w->s->light_count ? w->lights : NULL;
-    f.light_count = w->s->light_count;
-    f.media = w->s->medium_count ? w->s->media : NULL;
-    f.medium_count = w->s->medium_count;
-    memcpy(f.ambient, w->s->ambient, sizeof f.ambient);
-    memcpy(f.background, w->s->background, sizeof f.background);
-    f.colour = image_of(w, w->out->surface, TYN_RGB_F32);
-    f.depth = image_of(w, w->out->depth, TYN_DEPTH_F32);
-    f.executor = pool_executor(w->threads);
-    status = tyn_raster_surface(w->raster, &f);
-    w->out->times.surface_ns = clock_now(NULL) - start;
-    return status == TYN_OK ? 0 : fail(w, 0, "surfaces", status);
 }
 
 static int draw_shafts(work *w)
@@ -251,7 +251,8 @@ int render_scene(const scene *s, const char *name, const render_settings *settin
     w.error = error;
     pool_watch(threads, progress_jobs);
     status = check_supported(&w) != 0 || make_config(&w) != 0 || allocate(&w) != 0 || make_raster(&w) != 0 ||
-             draw_shadows(&w) != 0 || draw_surface(&w) != 0 || draw_shafts(&w) != 0;
+             draw_surface(&w, "depth", NULL, 0) != 0 || draw_shadows(&w) != 0 ||
+             draw_surface(&w, "surfaces", result->surface, s->light_count) != 0 || draw_shafts(&w) != 0;
     for (int i = 0; i < TYN_MAX_LIGHTS; i++)
         free(w.maps[i]);
     free(w.raster_block);
