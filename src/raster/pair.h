@@ -1,6 +1,6 @@
-/* pair.h - sums and products of about 48 bits out of floats (Dekker, Knuth): high + low, |low| at most half a last place of high.
- * For planes that nearly run through the eye, where terms of single precision cancel. Exact as long as nothing is fused or kept
- * in wider registers, and numbers stay within 1e-15 .. 1e15. */
+/* pair.h - sums and products of about 48 bits out of floats (Dekker, Knuth): high + low, |low| at most half a last place of
+ * high. For planes that nearly run through the eye, where terms of single precision cancel. Exact as long as nothing is fused
+ * or kept in wider registers, and numbers stay within 1e-15 .. 1e15. */
 #ifndef TYNI_RASTER_PAIR_H
 #define TYNI_RASTER_PAIR_H
 

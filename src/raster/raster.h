@@ -72,11 +72,12 @@ typedef struct tyni_raster_tally {
 typedef struct tyni_raster_view {
     float origin[3];           /* subtracted from a world point first */
     float row[4][3], shift[4]; /* then these give x, y, value, w */
-    float middle[2];           /* x / w and y / w at the image's centre */
+    float middle[2];           /* x / w and y / w at the image's centre; the exact number is middle + middle_low */
     float half[2];             /* pixels from its top left corner to there */
     float scale[2];            /* pixels per x / w, y / w */
-    float step[2];             /* x / w, y / w per pixel */
-    float clip;                /* w below this is cut off; > 0 */
+    float step[2];             /* x / w, y / w per pixel; step + step_low */
+    float middle_low[2], step_low[2];
+    float clip; /* w below this is cut off; > 0 */
     int32_t width, height;
 } tyni_raster_view;
 
@@ -143,7 +144,7 @@ int tyni_raster_make_facet(tyni_vec3 p0, tyni_vec3 p1, tyni_vec3 p2, tyni_raster
 tyni_vec3 tyni_raster_gradient(const tyni_raster_facet *facet, float da, float db);
 
 int tyni_raster_transform(const tyni_raster_view *view, const float point[3], tyni_raster_vertex *vertex);
-void tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex v[3], tyni_raster_plane *plane);
+int tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex v[3], tyni_raster_plane *plane);
 void tyni_raster_setup(void *pass, int32_t chunk, int32_t worker);
 
 /* clip.c: out of 3 vertices 0 or 3 .. TYNI_RASTER_CORNERS. */

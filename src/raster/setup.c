@@ -61,7 +61,7 @@ tyni_vec3 tyni_raster_gradient(const tyni_raster_facet *f, float da, float db)
     return tyni_vec_scale(tyni_vec_add(tyni_vec_scale(a, da), tyni_vec_scale(b, db)), f->unit / f->square);
 }
 
-/* The corner nearest to the eye: the plane's distance suffers least from cancellation there. */
+/* The corner nearest to the eye, where the plane's distance suffers least from cancellation, and the farthest. */
 static const tyni_raster_vertex *nearest(const tyni_raster_vertex v[3])
 {
     const tyni_raster_vertex *best = v;
@@ -71,56 +71,59 @@ static const tyni_raster_vertex *nearest(const tyni_raster_vertex v[3])
     return best;
 }
 
+static const tyni_raster_vertex *farthest(const tyni_raster_vertex v[3])
+{
+    const tyni_raster_vertex *best = v;
+    for (int32_t i = 1; i < 3; i++)
+        if (largest(position(&v[i])) > largest(position(best)))
+            best = &v[i];
+    return best;
+}
+
 /* Infinity and NaN stay out: what was in the plane before will do. */
-static int set_values(tyni_raster_plane *plane, float value, float dx, float dy)
+static void set_values(tyni_raster_plane *plane, float value, float dx, float dy)
 {
     if (!tyni_finite(value) || !tyni_finite(dx) || !tyni_finite(dy))
-        return 0;
+        return;
     plane->value = value;
     plane->dx = dx;
     plane->dy = dy;
-    return 1;
 }
 
-/* x / w (y / w) at a pixel's centre. */
+/* x / w (y / w) at a pixel's centre. The offset from the middle is exact. */
 static tyni_pair ray_through(const tyni_raster_view *view, int32_t axis, int32_t pixel)
 {
-    const float from_middle = (float)pixel + 0.5f - view->half[axis]; /* exact */
-    return tyni_pair_add(tyni_pair_of(view->middle[axis]), tyni_pair_product(from_middle, view->step[axis]));
+    const tyni_pair offset = tyni_pair_of((float)pixel + 0.5f - view->half[axis]);
+    const tyni_pair middle = {view->middle[axis], view->middle_low[axis]}, step = {view->step[axis], view->step_low[axis]};
+    return tyni_pair_add(middle, tyni_pair_mul(offset, step));
 }
 
 /* With r = (x / w, y / w, 1) at a pixel, w r lies on the plane where 1 / w = (normal . r) / distance. The value changes by
  * `g` along the plane, so value / w = g . (r - p / w') + p.value / w' with any corner p, and 1 / w' as above. Everything is
- * linear in r. The vertices are those before clipping and snapping: a piece of a triangle has the plane of the whole. */
-void tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex v[3], tyni_raster_plane *plane)
+ * linear in r. The vertices are those before clipping and snapping: a piece of a triangle has the plane of the whole.
+ * Says whether the plane is so nearly seen edge on, somewhere, that cancellation costs more than 4 bits. */
+int tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex v[3], tyni_raster_plane *plane)
 {
     const tyni_raster_vertex *p = nearest(v);
     const tyni_vec3 at = position(p);
     const tyni_vec3 r = tyni_vec(ray_through(view, 0, plane->x0).high, ray_through(view, 1, plane->y0).high, 1.0f);
     const float da = v[1].value - v[0].value, db = v[2].value - v[0].value;
     tyni_vec3 g = tyni_vec(0.0f, 0.0f, 0.0f);
-    float inverse, rest;
+    float distance, inverse, rest, w;
     tyni_raster_facet f;
     plane->value = p->value / p->w; /* seen edge on, or no area: any value of its own will do */
     plane->dx = plane->dy = 0.0f;
     if (!tyni_raster_make_facet(position(&v[0]), position(&v[1]), position(&v[2]), &f))
-        return;
-    inverse = 1.0f / tyni_vec_dot(f.normal, at);
-    if (!tyni_finite(inverse))
-        return;
+        return 1;
     if (da != 0.0f || db != 0.0f)
         g = tyni_raster_gradient(&f, da, db);
+    distance = tyni_vec_dot(f.normal, at);
+    inverse = 1.0f / distance;
     rest = (p->value - tyni_vec_dot(g, at)) * inverse;
-    {
-        const float w = tyni_vec_dot(f.normal, r) * inverse;
-        const float value = tyni_vec_dot(g, tyni_vec_mad(r, -w, at)) + p->value * w;
-        const float dx = view->step[0] * (g.x + rest * f.normal.x), dy = view->step[1] * (g.y + rest * f.normal.y);
-        if (!tyni_finite(value) || !tyni_finite(dx) || !tyni_finite(dy))
-            return;
-        plane->value = value;
-        plane->dx = dx;
-        plane->dy = dy;
-    }
+    w = tyni_vec_dot(f.normal, r) * inverse;
+    set_values(plane, tyni_vec_dot(g, tyni_vec_mad(r, -w, at)) + p->value * w, view->step[0] * (g.x + rest * f.normal.x),
+               view->step[1] * (g.y + rest * f.normal.y));
+    return tyni_absf(distance) < 0.0625f * largest(position(farthest(v)));
 }
 
 static tyni_pair3 difference(const float *a, const float *b, float unit)
@@ -142,9 +145,9 @@ static tyni_pair3 exactly(const float *a)
 }
 
 /* A camera's plane from world positions: 1 / w = normal . ray / distance. Rotated corners are off by their distance's last
- * place, which moves a floor of kilometres under an eye at 2 m by 1e-4 of its depth. Here nothing is rounded to single precision
- * before the end. */
-static void set_exact_plane(const tyni_raster_view *view, const float *p[3], tyni_raster_plane *plane)
+ * place, which moves a floor of kilometres under an eye at 2 m by 1e-4 of its depth. Here nothing is rounded to single
+ * precision before the end. */
+static void set_exact_plane(const tyni_raster_view *view, const float *const p[3], tyni_raster_plane *plane)
 {
     float size = 0.0f, unit, inverse;
     tyni_pair3 a, b, eye, normal, right, up, forward;
@@ -231,6 +234,8 @@ static int make_piece(const tyni_raster_pass *pass, tyni_raster_piece *piece, ty
     const tyni_raster_view *view = &pass->view;
     const tyn_mesh *mesh = &pass->meshes[piece->mesh];
     const uint32_t *index = mesh->indices + (size_t)piece->triangle * 3;
+    const float *const point[3] = {mesh->positions + (size_t)index[0] * 3, mesh->positions + (size_t)index[1] * 3,
+                                   mesh->positions + (size_t)index[2] * 3};
     tyni_raster_vertex whole[3], cut[TYNI_RASTER_CORNERS];
     const tyni_raster_vertex *v = whole;
     int32_t any = 0, all = ~0, count = 3;
@@ -239,7 +244,7 @@ static int make_piece(const tyni_raster_pass *pass, tyni_raster_piece *piece, ty
     rows->last = 0;
     for (int32_t i = 0; i < 3; i++) {
         int32_t out;
-        if (!tyni_raster_transform(view, mesh->positions + (size_t)index[i] * 3, &whole[i]))
+        if (!tyni_raster_transform(view, point[i], &whole[i]))
             return 0;
         out = tyni_raster_outside(view, &whole[i]);
         any |= out;
@@ -255,8 +260,8 @@ static int make_piece(const tyni_raster_pass *pass, tyni_raster_piece *piece, ty
             return 1;
     }
     place(view, v, count, piece);
-    if (touched(view, piece, rows))
-        tyni_raster_set_plane(view, whole, &piece->plane);
+    if (touched(view, piece, rows) && tyni_raster_set_plane(view, whole, &piece->plane) && pass->kind != TYNI_RASTER_SHADOW)
+        set_exact_plane(view, point, &piece->plane);
     return 1;
 }
 

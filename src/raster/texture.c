@@ -4,7 +4,8 @@
 #include "check.h"
 #include "vec.h"
 
-/* The part behind the point, 0 <= x <= 1 (1 by rounding alone). Numbers too large to have one, and what is not finite, give 0. */
+/* The part behind the point, 0 <= x <= 1 (1 by rounding alone). Numbers too large to have one, and what is not finite, give 0.
+ */
 static float fraction(float x)
 {
     return tyni_absf(x) < 8388608.0f ? x - (float)tyni_floori(x) : 0.0f;
@@ -69,13 +70,13 @@ void tyni_raster_set_cutout(const tyni_raster_pass *pass, const tyni_raster_piec
         (void)tyni_raster_transform(&pass->view, mesh->positions + (size_t)index[i] * 3, &v[i]);
         v[i].value = mesh->texcoords[(size_t)index[i] * 2];
     }
-    tyni_raster_set_plane(&pass->view, v, &cutout->u);
+    (void)tyni_raster_set_plane(&pass->view, v, &cutout->u);
     for (int32_t i = 0; i < 3; i++)
         v[i].value = mesh->texcoords[(size_t)index[i] * 2 + 1];
-    tyni_raster_set_plane(&pass->view, v, &cutout->v);
+    (void)tyni_raster_set_plane(&pass->view, v, &cutout->v);
     for (int32_t i = 0; i < 3; i++)
         v[i].value = 1.0f;
-    tyni_raster_set_plane(&pass->view, v, &cutout->w);
+    (void)tyni_raster_set_plane(&pass->view, v, &cutout->w);
 }
 
 int tyni_raster_solid(const tyni_raster_cutout *cutout, int32_t x, int32_t y)

@@ -1,6 +1,7 @@
 /* view.c - a camera or a shadow map as the view that triangles are set up for. See raster.h. */
 #include "raster/raster.h"
 
+#include "raster/pair.h"
 #include "vec.h"
 
 static void set_row(tyni_raster_view *view, int32_t i, const float *row, float shift)
@@ -14,10 +15,16 @@ static void set_row(tyni_raster_view *view, int32_t i, const float *row, float s
  */
 static void set_window(tyni_raster_view *view, int32_t axis, float from, float to, int32_t size)
 {
-    view->middle[axis] = 0.5f * from + 0.5f * to;
-    view->half[axis] = 0.5f * (float)size;
-    view->scale[axis] = (float)size / (to - from);
-    view->step[axis] = (to - from) / (float)size;
+    const float n = (float)size;
+    const tyni_pair span = tyni_pair_sum(to, -from), middle = tyni_pair_sum(0.5f * from, 0.5f * to);
+    const float step = span.high / n;
+    const tyni_pair back = tyni_pair_product(step, n);
+    view->middle[axis] = middle.high;
+    view->middle_low[axis] = middle.low;
+    view->half[axis] = 0.5f * n;
+    view->scale[axis] = n / span.high;
+    view->step[axis] = step;
+    view->step_low[axis] = ((span.high - back.high) - back.low + span.low) / n;
 }
 
 void tyni_raster_view_camera(tyni_raster_view *view, const tyn_camera *camera, int32_t width, int32_t height)
