@@ -1,0 +1,52 @@
+/* test_pool.c - the tool's threads: each job once, each worker number in one thread at a time, what was written is seen. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "pool.h"
+#include "test.h"
+
+enum { JOBS = 5000 };
+
+typedef struct tally {
+    int32_t done[JOBS];
+    int32_t inside[TYN_MAX_WORKERS]; /* not 0 while a worker is in a job */
+    int32_t workers, errors[TYN_MAX_WORKERS];
+} tally;
+
+static void job(void *argument, int32_t index, int32_t worker)
+{
+    tally *t = argument;
+    if (worker < 0 || worker >= t->workers) {
+        abort();
+    }
+    t->errors[worker] += t->inside[worker]++ != 0;
+    t->done[index]++;
+    t->inside[worker]--;
+}
+
+void test_pool(void)
+{
+    static const int32_t sizes[] = {1, 2, 3, 8, TYN_MAX_WORKERS};
+    tally *t = malloc(sizeof *t);
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+        pool *p = pool_create(sizes[s]);
+        const tyn_executor *e = p ? pool_executor(p) : NULL;
+        TEST("a pool runs each job once");
+        CHECK(e && e->workers >= 1 && e->workers <= sizes[s]);
+        for (int round = 0; e && round < 50; round++) {
+            int32_t count = round < 3 ? round : (int32_t)(test_random() % JOBS), wrong = 0;
+            memset(t, 0, sizeof *t);
+            t->workers = e->workers;
+            e->run(e->context, job, t, count);
+            for (int32_t i = 0; i < JOBS; i++)
+                wrong += t->done[i] != (i < count);
+            for (int32_t i = 0; i < TYN_MAX_WORKERS; i++)
+                wrong += t->errors[i];
+            CHECK(wrong == 0);
+        }
+        pool_free(p);
+    }
+    CHECK(pool_default_workers() >= 1 && pool_default_workers() <= TYN_MAX_WORKERS);
+    pool_free(NULL);
+    free(t);
+}
