@@ -29,7 +29,7 @@ all: $(B)/libtyndall.a $(B)/tyndall
 run: all
 	$(B)/tyndall showcase $(B)
 
-test: all $(B)/tests
+test: all $(B)/tests $(B)/bench
 	@B=$(B) CC="$(CC)" CFLAGS="$(CFLAGS)" MAKE="$(MAKE)" sh tests/run.sh
 
 check-all:
