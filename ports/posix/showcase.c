@@ -21,8 +21,8 @@ struct picture {
 };
 
 static const struct picture pictures[] = {
-    {"pillars", scene_pillars, 0, 2048}, {"rose", scene_rose, 0, 2048},       {"forest", scene_forest, 0, 2048},
-    {"spot", scene_spot, 0, 2048},       {"terrain", scene_terrain, 0, 4096},
+    {"pillars", scene_pillars, 1.0f, 2048}, {"rose", scene_rose, 0.9f, 2048},        {"forest", scene_forest, 0.33f, 2048},
+    {"spot", scene_spot, 4.0f, 2048},       {"terrain", scene_terrain, 0.27f, 4096},
 };
 #define PICTURES (sizeof pictures / sizeof pictures[0])
 

@@ -13,7 +13,7 @@ struct wood {
 
 static void paint_bark(float u, float v, float rgb[3])
 {
-    static const float dark[3] = {0.05f, 0.04f, 0.03f}, light[3] = {0.27f, 0.22f, 0.17f}, moss[3] = {0.13f, 0.18f, 0.05f};
+    static const float dark[3] = {0.035f, 0.027f, 0.02f}, light[3] = {0.20f, 0.155f, 0.11f}, moss[3] = {0.13f, 0.18f, 0.05f};
     float bend = 0.06f * noise_sum(u * 4, v * 4, 2, 4, 31);
     float ridge = 1 - 2.2f * fabsf(noise_gradient((u + bend) * 16, v * 4, 4 * 4, 32, NULL));
     shapes_mix(rgb, dark, light, 0.2f + 0.6f * ridge + 0.4f * noise_sum(u * 16, v * 16, 3, 16, 33));
@@ -69,7 +69,7 @@ static void mask_fern(float u, float v, float rgb[3])
 
 static float ground_height(float x, float z)
 {
-    return 0.55f * noise_sum(x * 0.11f, z * 0.11f, 4, 0, 71) + 0.035f * (x * x) * 0.12f;
+    return 0.55f * noise_sum(x * 0.11f, z * 0.11f, 4, 0, 71) + 0.001f * x * x;
 }
 
 static void spray(struct wood *w, const float at[3], float size)
@@ -141,10 +141,11 @@ static void tree(struct wood *w, float x, float z, float height, float radius, f
         if (k == 0) { /* the roots' flare is short */
             float foot[3] = {a[0], a[1] + 0.7f, a[2]};
             clay_tube(&w->bark, a, foot, thick, radius, sides);
-            clay_tube(&w->bark, foot, b, radius, thin, sides);
-        } else {
-            clay_tube(&w->bark, a, b, thick, thin, sides);
+            thick = radius;
+            a[1] = foot[1];
         }
+        a[1] -= 0.15f * thick; /* tubes overlap, or a gap would open where the trunk bends */
+        clay_tube(&w->bark, a, b, thick, thin, sides);
         for (int n = 0; n < 3 && t > bare; n++) {
             float turn = noise_next(&w->dice, 0, 2 * SHAPES_PI), rise = noise_next(&w->dice, 0.1f, 0.8f);
             float way[3] = {cosf(turn), rise, sinf(turn)};
@@ -176,8 +177,8 @@ static void plant(struct wood *w)
     tree(w, -3.4f, -5.2f, 17, 0.42f, 0.45f);
     tree(w, 4.6f, -7.5f, 18, 0.36f, 0.4f);
     tree(w, 1.5f, -13.5f, 16, 0.33f, 0.38f);
-    for (int tries = 0; tries < 900 && count < 95; tries++) {
-        float z = -8 - 62 * noise_next(&w->dice, 0, 1), x = noise_next(&w->dice, -1, 1) * (9 - 0.62f * z);
+    for (int tries = 0; tries < 1500 && count < 110; tries++) {
+        float z = -8 - 62 * noise_next(&w->dice, 0, 1), x = noise_next(&w->dice, -1, 1) * (10 - 0.75f * z);
         float path = 0.09f * -z + 1.1f * sinf(z * 0.15f);
         int free_place = fabsf(x - path) > 1.6f + 0.02f * -z;
         for (int i = 0; i < count; i++) {
@@ -200,13 +201,13 @@ static void plant(struct wood *w)
 
 int scene_forest(scene *s)
 {
-    static const float position[3] = {0, 1.55f, 3}, target[3] = {-2.3f, 3.05f, -12}, sun[3] = {-0.10f, -0.34f, 0.93f};
-    static const float warm[3] = {17, 12.8f, 7.4f}, ambient[3] = {1.3f, 1.9f, 1.8f}, sky[3] = {0.9f, 1.05f, 1.1f};
+    static const float position[3] = {0, 1.55f, 3}, target[3] = {-1.5f, 3.4f, -12}, sun[3] = {-0.10f, -0.34f, 0.93f};
+    static const float warm[3] = {19, 13.2f, 6.6f}, ambient[3] = {0.8f, 1.2f, 1.15f}, sky[3] = {0.9f, 1.05f, 1.1f};
     static const float fog[3] = {0.0145f, 0.0165f, 0.0185f}, glow[3] = {0.005f, 0.005f, 0.005f}, none[3] = {0, 0, 0};
     struct wood w;
     stage_camera(s, position, target, 56, 0.1f, 75);
     stage_colours(s, ambient, sky);
-    if (stage_sun(s, sun, warm) != 0 || stage_medium(s, fog, none, TYN_PHASE_HG, 0.5f) != 0 ||
+    if (stage_sun(s, sun, warm) != 0 || stage_medium(s, fog, none, TYN_PHASE_HG, 0.65f) != 0 ||
         stage_medium(s, glow, none, TYN_PHASE_HG, 0.85f) != 0) {
         return -1;
     }

@@ -176,14 +176,14 @@ static void mask_rose(float u, float v, float rgb[3])
 /* The wall with the rose, two layers of tracery in it, and small lancets below. */
 static void build_rose(struct clay *stone, struct clay *rose)
 {
-    static const struct clay_arch lancet = {1.55f, 5.6f, 0.8f, 0.85f, 1.8f, 4.0f, 1.3f, 10};
+    static const struct clay_arch lancet = {1.62f, 5.6f, 0.8f, 0.85f, 1.8f, 4.0f, 1.3f, 10};
     const struct clay_hole inner = {-HALF, 5.6f, HALF, 19, END, 0, 11.3f, 3.6f};
     struct clay_hole outer = inner;
     outer.z = END - 0.8f;
     clay_hole(stone, &inner);
     clay_hole(stone, &outer);
     for (int i = -2; i <= 2; i++) {
-        clay_place(stone, 1.55f * (float)i, 0, END, 0);
+        clay_place(stone, 1.62f * (float)i, 0, END, 0);
         clay_arch(stone, &lancet);
     }
     clay_place(stone, 0, 0, 0, 0);

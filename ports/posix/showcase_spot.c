@@ -85,7 +85,7 @@ static void build_fan(struct clay *metal)
         for (int k = 0; k < parts; k++) {
             float corner[4][3];
             for (int i = 0; i < 4; i++) {
-                float t = (float)(k + (i >= 2)) / (float)parts, radius = 0.3f + 1.5f * t;
+                float t = (float)(k + (i >= 2)) / (float)parts, radius = 0.3f + 1.57f * t;
                 float middle = 2 * SHAPES_PI * ((float)blade + 0.21f) / (float)blades + 0.25f * t;
                 float half = (0.34f + 0.05f * sinf(3 * t)) * (1 - 0.25f * t * t), side = i == 1 || i == 2 ? half : -half;
                 corner[i][0] = FAN_X + radius * cosf(middle + side);

@@ -9,51 +9,51 @@
 #include "shapes.h"
 
 /* The grid is a fan around the camera, finest near it, so that triangles are of one size on the screen. */
-#define COLUMNS 900
-#define ROWS 640
-#define FAN 0.96f /* radians to either side */
-#define NEAREST 40.0f
-#define FARTHEST 46000.0f
+#define COLUMNS 1000
+#define ROWS 860
+#define FAN 0.68f /* radians to either side: a little more than is seen */
+#define NEAREST 1500.0f
+#define FARTHEST 32000.0f
 
 /* Ridges whose finer octaves fade on slopes, as if water had carried the rubble down. */
 static float land_height(float x, float z)
 {
     float px = x / 5200 + 3.1f, pz = z / 5200 + 1.7f, sum = 0, tall = 1, dx = 0, dz = 0;
     for (uint32_t octave = 0; octave < 12; octave++) {
-        float slope[2], n = noise_gradient(px, pz, 0, 1500 + octave, slope);
+        float slope[2], n = noise_gradient(px, pz, 0, 900 + octave, slope);
         if (octave < 4) { /* a crease has no slope that could fade anything */
             n = 0.8f - 2.3f * sqrtf(n * n + 0.0006f);
         } else {
             dx += slope[0] * 0.8f;
             dz += slope[1] * 0.8f;
         }
-        sum += tall * n / (1 + 0.75f * (dx * dx + dz * dz));
-        tall *= octave < 2 ? 0.5f : 0.47f;
+        sum += tall * n / (1 + 0.22f * (dx * dx + dz * dz));
+        tall *= octave < 2 ? 0.5f : octave == 3 ? 0.62f : 0.5f;
         float turned = 1.6f * px + 1.2f * pz;
         pz = 1.6f * pz - 1.2f * px;
         px = turned;
     }
-    /* A valley leads from the camera to the sun. */
-    float bend = 0.16f * -z + 900 * sinf(z / 3900), away = fabsf(x - bend) / (1900 + 0.04f * -z);
-    float lift = 0.22f + 0.78f * shapes_step(0.2f, 2.6f, away);
+    /* A wide basin around the camera, a range behind it, and lower land beyond, so that light comes through the gaps. */
+    float away = sqrtf(x * x + z * z) * (1 + 0.25f * noise_gradient(x / 3000, z / 3000, 0, 240, NULL));
+    float lift = 0.16f + 0.84f * shapes_step(2800, 8600, away) - 0.45f * shapes_step(10500, 15500, away);
     float height = 0.62f + 0.62f * sum;
     return 300 + 2300 * lift * (height < 0 ? 0 : height * sqrtf(height));
 }
 
-static void paint_land(float height, float slope, float hollow, float x, float z, float rgb[3])
+static void paint_land(float height, float slope, float light, float x, float z, float rgb[3])
 {
     static const float rock[3] = {0.21f, 0.185f, 0.165f}, pale[3] = {0.36f, 0.33f, 0.29f}, grass[3] = {0.17f, 0.18f, 0.06f};
     static const float woods[3] = {0.035f, 0.06f, 0.025f}, snow[3] = {0.86f, 0.88f, 0.92f};
     float patch = noise_sum(x / 700, z / 700, 5, 0, 231), fine = noise_sum(x / 90, z / 90, 4, 0, 232);
-    shapes_mix(rgb, rock, pale, 0.5f + 0.6f * sinf(height / 46 + 3 * patch) * 0.5f + 0.5f * fine);
-    float green = shapes_step(0.85f, 0.45f, slope + 0.3f * fine) * shapes_step(1750, 1150, height + 350 * patch);
+    shapes_mix(rgb, rock, pale, 0.45f + 0.22f * sinf(height / 40 + 9 * patch) + 0.8f * fine);
+    float green = shapes_step(1.0f, 0.6f, slope + 0.3f * fine) * shapes_step(1850, 1250, height + 350 * patch);
     shapes_mix(rgb, rgb, grass, green);
     shapes_mix(rgb, rgb, woods,
-               shapes_step(1150, 700, height + 400 * patch) * shapes_step(1.1f, 0.6f, slope) * (0.8f + 0.4f * fine));
-    float cover = shapes_step(1500, 2050, height + 260 * patch) * shapes_step(1.05f, 0.6f, slope + 0.25f * fine);
+               shapes_step(1400, 850, height + 500 * patch) * shapes_step(1.2f, 0.7f, slope) * (0.7f + 0.6f * fine));
+    float cover = shapes_step(1420, 1900, height + 300 * patch) * shapes_step(1.05f, 0.6f, slope + 0.25f * fine);
     shapes_mix(rgb, rgb, snow, cover);
     for (int i = 0; i < 3; i++) {
-        rgb[i] *= hollow;
+        rgb[i] *= light;
     }
 }
 
@@ -78,14 +78,17 @@ static void colour_land(const float *positions, const tyn_image *image)
                 e[i] = q[i] - p[i];
                 f[i] = r[i] - p[i];
             }
-            float nx = e[1] * f[2] - e[2] * f[1], ny = e[2] * f[0] - e[0] * f[2], nz = e[0] * f[1] - e[1] * f[0];
-            float slope = sqrtf(nx * nx + nz * nz) / (fabsf(ny) + 1e-6f);
-            /* Lower than what lies 150 m around: a hollow, which sees less of the sky. */
-            float around = 0.25f * (land_height(p[0] + 150, p[2]) + land_height(p[0] - 150, p[2]) +
-                                    land_height(p[0], p[2] + 150) + land_height(p[0], p[2] - 150));
-            float hollow = 0.72f + (p[1] - around) * 0.009f;
-            hollow = hollow < 0.4f ? 0.4f : hollow > 1 ? 1 : hollow;
-            paint_land(p[1], slope, hollow, p[0], p[2], rgb);
+            float n[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
+            float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) * (n[1] < 0 ? -1.0f : 1.0f) + 1e-9f;
+            float slope = sqrtf(n[0] * n[0] + n[2] * n[2]) / (fabsf(n[1]) + 1e-6f);
+            /* The renderer's sky is the same from everywhere; a real one is brighter above and on one side. */
+            float sky = 0.42f + (-0.36f * n[0] + 0.52f * n[1] + 0.30f * n[2]) / length;
+            /* Lower than what lies around: a hollow, which sees less of it. */
+            float around = 0.25f * (land_height(p[0] + 70, p[2]) + land_height(p[0] - 70, p[2]) + land_height(p[0], p[2] + 70) +
+                                    land_height(p[0], p[2] - 70));
+            float hollow = 0.85f + (p[1] - around) * 0.013f;
+            hollow = hollow < 0.5f ? 0.5f : hollow > 1.1f ? 1.1f : hollow;
+            paint_land(p[1], slope, hollow * (sky < 0.15f ? 0.15f : sky), p[0], p[2], rgb);
             for (int i = 0; i < 3; i++) {
                 line[3 * column + i] = (uint8_t)(rgb[i] <= 0 ? 0 : rgb[i] >= 1 ? 255 : rgb[i] * 255 + 0.5f);
             }
@@ -127,13 +130,13 @@ static int build_land(scene *s)
 
 int scene_terrain(scene *s)
 {
-    static const float sun[3] = {-0.442f, -0.15f, 0.883f}, warm[3] = {20, 16.4f, 12.2f};
-    static const float ambient[3] = {2.2f, 3.2f, 4.8f}, sky[3] = {0.75f, 1.15f, 1.9f}, none[3] = {0, 0, 0};
+    static const float sun[3] = {-0.107f, -0.296f, 1}, warm[3] = {20, 15.6f, 10.8f};
+    static const float ambient[3] = {1.9f, 2.8f, 4.3f}, sky[3] = {0.8f, 1.4f, 2.8f}, none[3] = {0, 0, 0};
     static const float air[3] = {5.8e-6f, 13.5e-6f, 33.1e-6f}, haze[3] = {3.0e-5f, 3.0e-5f, 3.0e-5f};
-    float position[3] = {0, 0, 0}, target[3] = {2600, 0, -12000};
-    position[1] = 1500;
-    target[1] = 1300;
-    stage_camera(s, position, target, 38, 5, 45000);
+    float position[3] = {0, 0, 0}, target[3] = {0, 0, -12000};
+    position[1] = 1600;
+    target[1] = 2900;
+    stage_camera(s, position, target, 38, 5, 31000);
     stage_colours(s, ambient, sky);
     if (stage_sun(s, sun, warm) != 0 || stage_medium(s, air, none, TYN_PHASE_RAYLEIGH, 0) != 0 ||
         stage_medium(s, haze, none, TYN_PHASE_HG, 0.72f) != 0) {
