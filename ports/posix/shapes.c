@@ -427,7 +427,7 @@ static bool part_give(struct clay_part *part, scene *s, const tyn_material *mate
     return scene_take_mesh(s, positions, texcoords, part->vertices, indices, part->vertices / 3, material) == 0;
 }
 
-bool clay_finish(struct clay *clay, scene *s)
+int clay_finish(struct clay *clay, scene *s)
 {
     bool fine = !clay->broken;
     for (int t = 0; t < SHAPES_TINTS; t++) {
@@ -443,5 +443,5 @@ bool clay_finish(struct clay *clay, scene *s)
         free(part->texcoords);
     }
     memset(clay->parts, 0, sizeof clay->parts);
-    return fine;
+    return fine ? 0 : -1;
 }

@@ -89,7 +89,7 @@ void clay_hole(struct clay *clay, const struct clay_hole *hole);
 /* A floor of cells from (x0, z0) to (x1, z1), y = lift(x, z). */
 void clay_field(struct clay *clay, float x0, float z0, float x1, float z1, int32_t cells, float (*lift)(float x, float z));
 
-/* Gives the meshes to the scene and frees the clay. False: no memory. */
-bool clay_finish(struct clay *clay, scene *s);
+/* Gives the meshes to the scene and frees the clay. -1: no memory. */
+int clay_finish(struct clay *clay, scene *s);
 
 #endif

@@ -88,6 +88,6 @@ int scene_bench(scene *s, int leafy, int on_screen)
     } else {
         pillars(&solid, &dice);
     }
-    int fine = clay_finish(&ground, s) & clay_finish(&solid, s) & clay_finish(&leaf, s);
-    return fine ? 0 : -1;
+    int status = clay_finish(&ground, s) | clay_finish(&solid, s) | clay_finish(&leaf, s);
+    return status;
 }

@@ -245,8 +245,8 @@ static int build_church(scene *s, int rose)
         build_pews(&wood);
     }
     clay_field(&floor, -OUTER, END, OUTER, ENTRY, 40, NULL);
-    int fine = clay_finish(&stone, s) & clay_finish(&floor, s) & clay_finish(&wood, s) & clay_finish(&tracery, s);
-    return fine && s->image_count == 4 ? 0 : -1;
+    int status = clay_finish(&stone, s) | clay_finish(&floor, s) | clay_finish(&wood, s) | clay_finish(&tracery, s);
+    return status == 0 && s->image_count == 4 ? 0 : -1;
 }
 
 int scene_pillars(scene *s)
