@@ -264,7 +264,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_MEMORY(width, height, slices, samples, shadow_size, lights, workers)                                               \
     (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) + TYNI_BYTES(slices, 8) +        \
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
-     (size_t)(workers) * (TYNI_BYTES(shadow_size, 2) + 3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +               \
+     (size_t)(workers) * (2 * TYNI_BYTES(shadow_size, 4) + 3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +           \
                           2 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 #define TYN_CONTEXT_BYTES 256
 #define TYN_STATS_BYTES 128

@@ -43,7 +43,8 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
     tyni_arena arena = {NULL, 0, 0};
     size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
-    s->threshold = tyni_arena_take(&arena, (size_t)c->config.shadow_size, sizeof *s->threshold);
+    s->threshold = tyni_arena_take(&arena, 2 * (size_t)c->config.shadow_size, sizeof *s->threshold);
+    s->split = tyni_arena_take(&arena, (size_t)c->config.shadow_size, sizeof *s->split);
     s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
     s->value[0] = tyni_arena_take(&arena, samples, sizeof *s->value[0]);
     s->value[1] = tyni_arena_take(&arena, samples, sizeof *s->value[1]);
@@ -155,7 +156,7 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
         tyni_debug_mark(entries, s.rays, s.breaks, slice.first, slice.last);
         return;
     }
-    tyni_row_build(&row, s.threshold, config->shadow_size, &p->slices, &slice, &p->lamp, reach_of(p, &slice, s.depth));
+    tyni_row_build(&row, s.threshold, s.split, config->shadow_size, &p->slices, &slice, &p->lamp, reach_of(p, &slice, s.depth));
     for (int32_t j = tyni_sample_next(s.rays, slice.first, slice.last); j <= slice.last;
          j = tyni_sample_next(s.rays, j + 1, slice.last)) {
         float at = tyni_slice_p(&p->slices, j), length, value[2];
@@ -454,7 +455,8 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     c->light = g->lights > 1 ? tyni_arena_take(arena, (size_t)g->width * (size_t)g->height, 3 * sizeof *c->light) : NULL;
     c->counts = tyni_arena_take(arena, (size_t)g->workers, sizeof *c->counts);
     /* the parts of a scratch, in the order of scratch_of */
-    tyni_arena_take(&one, (size_t)g->shadow_size, sizeof(uint16_t));
+    tyni_arena_take(&one, 2 * (size_t)g->shadow_size, sizeof(uint16_t));
+    tyni_arena_take(&one, (size_t)g->shadow_size, sizeof(float));
     for (int32_t i = 0; i < 3; i++)
         tyni_arena_take(&one, samples, sizeof(float));
     for (int32_t i = 0; i < 2; i++)

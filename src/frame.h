@@ -9,7 +9,8 @@
 
 /* What one worker needs for one slice: small enough for its caches. */
 typedef struct tyni_scratch {
-    uint16_t *threshold;     /* shadow_size */
+    uint16_t *threshold;     /* 2 * shadow_size */
+    float *split;            /* shadow_size */
     float *depth;            /* samples */
     float *value[2];         /* samples: visibility, low and high */
     uint32_t *breaks, *rays; /* bits */

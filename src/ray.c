@@ -184,26 +184,26 @@ void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, 
     meter_end(&m);
 }
 
-/* Visibility of columns i .. i + 31 of the row; those past the end repeat the last. */
+/* Visibility of columns i .. i + 31 of the row; bits past its end are 0. */
 static uint32_t visibility(const tyni_row *row, int32_t i, uint32_t position)
 {
     uint32_t bits = 0;
-    int32_t n = tyni_mini(32, row->count - i);
+    int32_t n = tyni_mini(32, 2 * row->steps - i);
     for (int32_t b = 0; b < n; b++)
         bits |= (uint32_t)(position < row->threshold[i + b]) << b;
-    return n < 32 && bits >> (n - 1) ? bits | 0xffffffffu << n : bits;
+    return bits;
 }
 
-/* t of a column border. */
-static float border_t(line r, line w, float column)
+/* t of a step coordinate. */
+static float border_t(line r, line w, float at)
 {
-    return (column * w.c - r.c) / (r.d - column * w.d);
+    return (at * w.c - r.c) / (r.d - at * w.d);
 }
 
 static void row_words(const tyni_row *row, uint32_t position, line r, line w, float from, float to, meter *m)
 {
-    int32_t first = tyni_clampi((int32_t)from, 0, row->count - 1),
-            last = tyni_clampi(tyni_ceili(to) - 1, first, row->count - 1);
+    int32_t a = tyni_clampi((int32_t)from, 0, row->steps - 1), b = tyni_clampi(tyni_ceili(to) - 1, a, row->steps - 1);
+    int32_t first = 2 * a + (from - (float)a >= row->split[a]), last = 2 * b + (to - (float)b > row->split[b]);
     for (int32_t i = first & ~31; i <= last; i += 32) {
         uint32_t bits = visibility(row, i, position), changes;
         if (i < first) { /* columns before the ray look like its first */
@@ -216,16 +216,16 @@ static void row_words(const tyni_row *row, uint32_t position, line r, line w, fl
         }
         /* the first column of a word changes at its border, or where the ray comes in */
         if ((int)(bits & 1u) != m->on)
-            meter_switch(m, (int)(bits & 1u), i <= first ? border_t(r, w, tyni_maxf(from, 0.0f)) : border_t(r, w, (float)i));
+            meter_switch(m, (int)(bits & 1u), border_t(r, w, i <= first ? tyni_maxf(from, 0.0f) : tyni_row_edge(row, i)));
         changes = bits ^ (bits << 1 | (bits & 1u));
         for (; changes; changes &= changes - 1) {
-            int32_t b = tyni_ctz32(changes);
-            meter_switch(m, (int)(bits >> b & 1u), border_t(r, w, (float)(i + b)));
+            int32_t k = tyni_ctz32(changes);
+            meter_switch(m, (int)(bits >> k & 1u), border_t(r, w, tyni_row_edge(row, i + k)));
         }
     }
 }
 
-/* Column coordinates of the ray's ends. */
+/* Step coordinates of the ray's ends. */
 static void row_span(line r, line w, const tyni_integral *it, float *from, float *to)
 {
     *from = line_at(r, it->t0) / tyni_maxf(line_at(w, it->t0), 1e-9f);
@@ -241,9 +241,9 @@ void tyni_ray_row(const tyni_row *row, uint32_t position, const tyni_lamp *lamp,
     if (!(it->t0 < it->t1))
         return;
     meter_switch(&m, outside, it->t0);
-    if (row->count > 0) {
+    if (row->steps > 0) {
         line r = along(&row->r, v), w = along(&row->w, v);
-        float from, to, end = (float)row->count;
+        float from, to, end = (float)row->steps;
         row_span(r, w, it, &from, &to);
         if (from < end && to > 0.0f && from < to) {
             row_words(row, position, r, w, from, tyni_minf(to, end), &m);
@@ -258,10 +258,10 @@ int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, tyni_vec3 v)
 {
     line r = along(&row->r, v), w = along(&row->w, v);
     float from, to, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
-    if (row->count < 1)
+    if (row->steps < 1)
         return 0;
     row_span(r, w, it, &from, &to);
-    /* a column's share of the light, at most: 1 / columns in thin air, its optical depth in thick */
+    /* a texel's share of the light, at most: 1 / texels in thin air, its optical depth in thick */
     return tyni_maxf(1.0f, depth) > 0.05f * (to - from);
 }
 

@@ -125,65 +125,79 @@ static uint16_t threshold_of(float f0, float f1)
     return (uint16_t)(65534.0f * (f0 / (f0 - f1)) + 0.9999f);
 }
 
-void tyni_row_build(tyni_row *row, uint16_t *threshold, int32_t room, const tyni_slices *slices, const tyni_slice *slice,
-                    const tyni_lamp *lamp, float reach)
+/* The line on the map: starts at step coordinate 0, where it is at `minor`, and rises by `slope` a step. */
+typedef struct course {
+    int32_t across; /* the major axis is u */
+    float sign;     /* way along the major axis */
+    float base;     /* texel border that is step coordinate 0 */
+    float minor, slope;
+    int32_t steps;
+} course;
+
+static void course_begin(course *c, const float u[2], const float v[2], int32_t room)
 {
-    float u[2], v[2], pa, pb, p[2], base, sign, minor, slope, length;
-    float *major;
+    const float *major, *other;
+    c->across = tyni_absf(u[1] - u[0]) >= tyni_absf(v[1] - v[0]);
+    major = c->across ? u : v;
+    other = c->across ? v : u;
+    c->sign = major[1] >= major[0] ? 1.0f : -1.0f;
+    c->base = c->sign > 0.0f ? (float)tyni_floori(major[0]) : (float)tyni_ceili(major[0]);
+    c->slope = major[1] != major[0] ? (other[1] - other[0]) / (c->sign * (major[1] - major[0])) : 0.0f;
+    c->minor = other[0] - c->slope * (c->sign * (major[0] - c->base));
+    c->steps = tyni_clampi(tyni_ceili(c->sign * (major[1] - c->base)), 1, room);
+}
+
+static uint16_t column(const ends *e, float g, float z)
+{
+    if (!(z > 0.0f))
+        return 65535; /* nothing there: lit */
+    z = tyni_minf(z, 1.0f);
+    return threshold_of(e->g[0] * g + e->z[0] * z + e->c[0], e->g[1] * g + e->z[1] * z + e->c[1]);
+}
+
+static void fill(tyni_row *row, uint16_t *threshold, float *split, const tyni_lamp *lamp, const course *c, const ends *e)
+{
+    int32_t size = lamp->size, first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
+    ptrdiff_t step = c->across ? 1 : size, pitch = c->across ? size : 1;
+    const float *texel = lamp->depth + step * first;
+    row->steps = tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
+    step = c->sign > 0.0f ? step : -step;
+    for (int32_t k = 0; k < row->steps; k++, texel += step) {
+        float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * (float)(k + 1), cut = 1.0f;
+        int32_t a = tyni_clampi(tyni_floori(from), 0, size - 1), b = tyni_clampi(tyni_floori(to), 0, size - 1);
+        if (a != b) /* |slope| <= 1: they are neighbours */
+            cut = tyni_clampf(((float)tyni_maxi(a, b) - from) / c->slope, 0.0f, 1.0f);
+        split[k] = cut;
+        threshold[2 * k] = column(e, (float)k + 0.5f * cut, texel[a * pitch]);
+        threshold[2 * k + 1] = a != b ? column(e, (float)k + 0.5f + 0.5f * cut, texel[b * pitch]) : threshold[2 * k];
+    }
+}
+
+void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, int32_t room, const tyni_slices *slices,
+                    const tyni_slice *slice, const tyni_lamp *lamp, float reach)
+{
+    float u[2], v[2], pa, pb, p[2], length;
     const tyni_form *form;
-    int32_t across, step;
+    course c;
     ends e;
     row->threshold = threshold;
-    row->count = 0;
+    row->split = split;
+    row->steps = 0;
     if (!lamp->depth || !fan_ends(lamp, slice, reach, u, v))
         return;
     /* the line's lit end comes first: the one nearer to the light on the screen */
     pa = tyni_slice_p(slices, slice->first);
     pb = tyni_slice_p(slices, slice->last);
-    if ((pa < slice->epipole) != lamp->behind) {
-        p[0] = pb;
-        p[1] = pa;
-    } else {
-        p[0] = pa;
-        p[1] = pb;
-    }
+    p[0] = (pa < slice->epipole) != lamp->behind ? pb : pa;
+    p[1] = (pa < slice->epipole) != lamp->behind ? pa : pb;
     length = p[1] - p[0];
     row->p_start = p[0];
     row->p_scale = length != 0.0f ? 65534.0f / length : 0.0f;
-    /* columns: whole texels along the major axis */
-    across = tyni_absf(u[1] - u[0]) >= tyni_absf(v[1] - v[0]);
-    major = across ? u : v;
-    form = across ? &lamp->u : &lamp->v;
-    sign = major[1] >= major[0] ? 1.0f : -1.0f;
-    base = sign > 0.0f ? (float)tyni_floori(major[0]) : (float)tyni_ceili(major[0]);
-    row->count = tyni_clampi(tyni_ceili(sign * (major[1] - base)), 1, room);
-    row->r.v = tyni_vec_scale(tyni_vec_mad(form->v, -base, lamp->w.v), sign);
-    row->r.c = sign * (form->c - base * lamp->w.c);
+    course_begin(&c, u, v, room);
+    form = c.across ? &lamp->u : &lamp->v;
+    row->r.v = tyni_vec_scale(tyni_vec_mad(form->v, -c.base, lamp->w.v), c.sign);
+    row->r.c = c.sign * (form->c - c.base * lamp->w.c);
     row->w = lamp->w;
-    if (!ends_begin(&e, row, slice, lamp, p)) {
-        row->count = 0;
-        return;
-    }
-    minor = across ? v[0] : u[0];
-    slope = major[1] != major[0] ? ((across ? v[1] : u[1]) - minor) / (sign * (major[1] - major[0])) : 0.0f;
-    minor += slope * (0.5f - sign * (major[0] - base));
-    step = across ? (int32_t)sign : (int32_t)sign * lamp->size;
-    {
-        int32_t first = tyni_clampi((int32_t)base - (sign < 0.0f), 0, lamp->size - 1);
-        const float *texel = lamp->depth + (across ? (ptrdiff_t)first : (ptrdiff_t)first * lamp->size);
-        int32_t pitch = across ? lamp->size : 1;
-        int32_t last = sign > 0.0f ? lamp->size - first : first + 1;
-        row->count = tyni_mini(row->count, last);
-        for (int32_t i = 0; i < row->count; i++) {
-            int32_t line = tyni_clampi((int32_t)(minor + slope * (float)i), 0, lamp->size - 1);
-            float g = (float)i + 0.5f, z = texel[(ptrdiff_t)line * pitch];
-            texel += step;
-            if (!(z > 0.0f)) {
-                threshold[i] = 65535;
-                continue;
-            }
-            z = tyni_minf(z, 1.0f);
-            threshold[i] = threshold_of(e.g[0] * g + e.z[0] * z + e.c[0], e.g[1] * g + e.z[1] * z + e.c[1]);
-        }
-    }
+    if (ends_begin(&e, row, slice, lamp, p))
+        fill(row, threshold, split, lamp, &c, &e);
 }
