@@ -41,7 +41,7 @@ static void trees(struct clay *wood, struct clay *leaf, uint32_t *dice)
         const float foot[3] = {x, y, z}, top[3] = {x, y + tall, z};
         clay_tube(wood, foot, top, 0.3f, 0.12f, 10);
         for (int n = 0; n < 350; n++) {
-            float d[3], e[3], f[3], corner[4][3], size = noise_next(dice, 0.12f, 0.26f), norm = 0;
+            float d[3], e[3], f[3], corner[4][3], size = noise_next(dice, 0.08f, 0.19f), norm = 0;
             for (int i = 0; i < 3; i++) { /* three directions that are not quite at right angles: leaves are not either */
                 d[i] = noise_next(dice, -1, 1);
                 e[i] = noise_next(dice, -1, 1) * size * 1.6f;
