@@ -131,7 +131,7 @@ int command_showcase(int argc, char **argv)
         known = known && find(argv[i]) != NULL;
     }
     if (!known) {
-        fprintf(stderr, "usage: tyndall showcase [DIR [NAME...]]\n");
+        fprintf(stderr, "tyndall: usage: tyndall showcase [DIR [NAME...]]\n");
         return 2;
     }
     pool *threads = pool_create(pool_default_workers());
@@ -150,7 +150,7 @@ int command_showcase(int argc, char **argv)
     }
     pool_free(threads);
     if (status != 0) {
-        fprintf(stderr, "%s\n", error.text);
+        fprintf(stderr, "tyndall: %s\n", error.text);
         return 1;
     }
     printf("pictures: %s/*.png\n", directory);

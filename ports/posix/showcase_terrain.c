@@ -65,6 +65,11 @@ static void land_point(int32_t column, int32_t row, float *x, float *z)
     *z = -distance * cosf(angle);
 }
 
+static const float *grid_point(const float *positions, int32_t column, int32_t row)
+{
+    return positions + 3 * ((size_t)row * COLUMNS + (size_t)column);
+}
+
 /* Colours of the grid's points, from their heights. */
 static void colour_land(const float *positions, const tyn_image *image)
 {
@@ -72,7 +77,7 @@ static void colour_land(const float *positions, const tyn_image *image)
         uint8_t *line = (uint8_t *)image->pixels + (size_t)(ROWS - 1 - row) * COLUMNS * 3;
         for (int32_t column = 0; column < COLUMNS; column++) {
             int32_t side = column + 1 < COLUMNS ? 1 : -1, ahead = row + 1 < ROWS ? COLUMNS : -COLUMNS;
-            const float *p = positions + 3 * (row * COLUMNS + column), *q = p + 3 * side, *r = p + 3 * ahead;
+            const float *p = grid_point(positions, column, row), *q = p + 3 * side, *r = p + 3 * ahead;
             float e[3], f[3], rgb[3];
             for (int i = 0; i < 3; i++) {
                 e[i] = q[i] - p[i];
@@ -84,9 +89,12 @@ static void colour_land(const float *positions, const tyn_image *image)
             /* The renderer's sky is the same from everywhere; a real one is brighter above and on one side. */
             float sky = 0.42f + (-0.36f * n[0] + 0.52f * n[1] + 0.30f * n[2]) / length;
             /* Lower than what lies around: a hollow, which sees less of it. */
-            float around = 0.25f * (land_height(p[0] + 70, p[2]) + land_height(p[0] - 70, p[2]) + land_height(p[0], p[2] + 70) +
-                                    land_height(p[0], p[2] - 70));
-            float hollow = 0.85f + (p[1] - around) * 0.013f;
+            int32_t left = column < 6 ? 0 : column - 6, right = column + 6 < COLUMNS ? column + 6 : COLUMNS - 1;
+            int32_t below = row < 6 ? 0 : row - 6, above = row + 6 < ROWS ? row + 6 : ROWS - 1;
+            const float *around[4] = {grid_point(positions, left, row), grid_point(positions, right, row),
+                                      grid_point(positions, column, below), grid_point(positions, column, above)};
+            float rise = p[1] - 0.25f * (around[0][1] + around[1][1] + around[2][1] + around[3][1]);
+            float hollow = 0.85f + 60 * rise / (NEAREST + fabsf(p[2]));
             hollow = hollow < 0.5f ? 0.5f : hollow > 1.1f ? 1.1f : hollow;
             paint_land(p[1], slope, hollow * (sky < 0.15f ? 0.15f : sky), p[0], p[2], rgb);
             for (int i = 0; i < 3; i++) {
