@@ -202,6 +202,9 @@ if (ulimit -f 8) 2>/dev/null; then
     empty 'a file too large for its limit is an error' "$([ $? -eq 1 ] && grep -q "can't be written" err.txt || cat err.txt)"
     none 'that leaves nothing'
 fi
+"$tyndall" render good.scene -o o/a.ppm --stats >&- 2>&-
+empty 'closed streams: a status, and no statistics in the picture' "$([ $? -eq 1 ] && [ "$(wc -c <o/a.ppm)" -eq 9229 ] || echo "$?")"
+rm -f o/a.ppm
 chmod 555 o
 if touch o/probe 2>/dev/null; then
     rm -f o/probe

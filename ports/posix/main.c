@@ -1,7 +1,9 @@
 /* main.c - the commands of the tool. */
 #include "commands.h"
 
+#include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tyndall.h"
@@ -46,9 +48,20 @@ static int run(int argc, char **argv)
     return 2;
 }
 
+/* With a standard stream closed, the next file opened would get its number, and messages would go into a picture. What is put
+ * there instead can't be written, so that lost output still counts as an error. */
+static void hold_streams(void)
+{
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDONLY) != fd)
+            exit(1);
+}
+
 int main(int argc, char **argv)
 {
-    int status = run(argc, argv);
+    int status;
+    hold_streams();
+    status = run(argc, argv);
     /* What was printed is output too: a full disk behind stdout is a failure. */
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "tyndall: stdout: can't be written\n");
