@@ -72,7 +72,7 @@ void tyni_medium_mix(const tyni_medium *m, float cosine, float mix[3])
 void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t, float density[3])
 {
     tyni_vec3 to = tyni_vec_sub(lamp->position, tyni_vec_scale(v, t)); /* from the point to the light */
-    float r2 = tyni_maxf(tyni_vec_dot(to, to), 1e-20f), r = sqrtf(r2);
+    float r2 = tyni_maxf(tyni_vec_dot(to, to), lamp->radius * lamp->radius), r = sqrtf(r2);
     if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
             density[c] = tyni_num_exp(-medium->sigma[c] * t);
@@ -84,74 +84,65 @@ void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyn
         density[c] *= tyni_num_exp(-medium->sigma[c] * (t + r)) / r2;
 }
 
-/* The variable q of medium.h. The reference tr is the end farther from the light, so that wr > 0. */
-typedef struct path {
-    float tr, w0, w1, wr, q0, q1;
-} path;
-
-static float path_w(const path *p, float t)
+static void path_begin(tyni_path *p, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
 {
-    return tyni_maxf(p->w0 + p->w1 * t, 1e-4f * p->wr);
-}
-static float path_t(const path *p, float q)
-{
-    return p->tr + q * p->wr / (1.0f - q * p->w1);
+    tyni_vec3 h;
+    p->t0 = t0;
+    p->t1 = t1;
+    p->near_t = tyni_vec_dot(v, lamp->position);
+    p->from = t0 - p->near_t;
+    h = tyni_vec_mad(lamp->position, -p->near_t, v);
+    p->h = tyni_maxf(tyni_vec_length(h), lamp->radius);
+    p->span = tyni_num_atan2(p->h * (t1 - t0), p->from * (t1 - p->near_t) + p->h * p->h);
 }
 
-static void path_begin(path *p, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+static float path_t(const tyni_path *p, float psi)
 {
-    float wa, wb;
-    p->w0 = -tyni_vec_dot(lamp->position, lamp->axis);
-    p->w1 = tyni_vec_dot(v, lamp->axis);
-    wa = p->w0 + p->w1 * t0;
-    wb = p->w0 + p->w1 * t1;
-    p->tr = wa > wb ? t0 : t1;
-    p->wr = tyni_maxf(tyni_maxf(wa, wb), 1e-20f);
-    p->q0 = (t0 - p->tr) / path_w(p, t0);
-    p->q1 = (t1 - p->tr) / path_w(p, t1);
+    float sine, cosine, d;
+    tyni_num_sincos(psi, &sine, &cosine);
+    d = p->h * cosine - p->from * sine;
+    if (!(d > 0.0f))
+        return p->t1;
+    return tyni_clampf(p->t0 + sine * (p->from * p->from + p->h * p->h) / d, p->t0, p->t1);
 }
 
-/* The integrand per dq. */
-static void path_value(const path *p, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float q, float value[3])
+/* The integrand per d psi. */
+static void path_value(const tyni_path *p, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float psi,
+                       float value[3])
 {
-    float t = path_t(p, q), w = path_w(p, t), scale = w * w / p->wr;
+    float t = path_t(p, psi), d = t - p->near_t, scale;
     tyni_integral_density(medium, lamp, v, t, value);
+    scale = (d * d + p->h * p->h) / p->h;
     for (int32_t c = 0; c < 3; c++)
         value[c] *= scale;
 }
 
-/* Simpson intervals: more where the integrand bends, by depth and by the phase function's peak. */
-static int32_t intervals(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+/* Simpson intervals: more where the integrand bends, by angle, by depth and by the phase function's peak. */
+static int32_t intervals(const tyni_medium *medium, const tyni_path *p)
 {
-    float sigma = medium->sigma[medium->high], bend = 4.0f;
-    float a = t0 + tyni_vec_length(tyni_vec_sub(lamp->position, tyni_vec_scale(v, t0)));
-    float b = t1 + tyni_vec_length(tyni_vec_sub(lamp->position, tyni_vec_scale(v, t1)));
-    bend += 2.0f * sigma * (b - a);
-    bend += 4.0f * medium->peak / (1.0f - medium->peak);
-    return tyni_clampi((int32_t)tyni_minf(bend, 64.0f), 4, TYNI_MEDIUM_KNOTS - 1);
+    float a = p->from, b = p->t1 - p->near_t, h2 = p->h * p->h, depth;
+    depth = medium->sigma[medium->high] * ((p->t1 - p->t0) + tyni_absf(sqrtf(b * b + h2) - sqrtf(a * a + h2)));
+    return tyni_clampi(
+        (int32_t)tyni_minf(4.0f + 3.0f * p->span + 2.0f * depth + 4.0f * medium->peak / (1.0f - medium->peak), 64.0f), 4,
+        TYNI_MEDIUM_KNOTS - 1);
 }
 
 static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v)
 {
-    path p;
     float last[3], half[3], next[3];
-    int32_t n = intervals(medium, lamp, v, it->t0, it->t1);
-    path_begin(&p, lamp, v, it->t0, it->t1);
-    it->tr = p.tr;
-    it->w0 = p.w0;
-    it->w1 = p.w1;
-    it->wr = p.wr;
-    it->q0 = p.q0;
-    it->step = (p.q1 - p.q0) / (float)n;
+    int32_t n;
+    path_begin(&it->path, lamp, v, it->t0, it->t1);
+    n = intervals(medium, &it->path);
+    it->step = it->path.span / (float)n;
     it->knots = n + 1;
-    path_value(&p, medium, lamp, v, p.q0, last);
+    path_value(&it->path, medium, lamp, v, 0.0f, last);
     for (int32_t i = 0; i < it->count; i++) {
         it->sum[i][0] = 0.0f;
         it->value[i][0] = last[it->channels[i]] * it->step;
     }
     for (int32_t k = 1; k <= n; k++) {
-        path_value(&p, medium, lamp, v, p.q0 + ((float)k - 0.5f) * it->step, half);
-        path_value(&p, medium, lamp, v, p.q0 + (float)k * it->step, next);
+        path_value(&it->path, medium, lamp, v, ((float)k - 0.5f) * it->step, half);
+        path_value(&it->path, medium, lamp, v, (float)k * it->step, next);
         for (int32_t i = 0; i < it->count; i++) {
             int32_t c = it->channels[i];
             it->sum[i][k] = it->sum[i][k - 1] + it->step * (1.0f / 6.0f) * (last[c] + 4.0f * half[c] + next[c]);
@@ -167,12 +158,12 @@ void tyni_integral_begin(tyni_integral *it, const tyni_medium *medium, const tyn
     it->count = count;
     it->t0 = t0;
     it->t1 = t1;
-    it->spot = lamp->kind == TYN_LIGHT_SPOT;
+    it->local = lamp->kind != TYN_LIGHT_DIRECTIONAL;
     for (int32_t i = 0; i < count; i++) {
         it->channels[i] = channels[i];
         it->sigma[i] = medium->sigma[channels[i]];
     }
-    if (it->spot && t1 > t0)
+    if (it->local && t1 > t0)
         tabulate(it, medium, lamp, v);
 }
 
@@ -190,9 +181,10 @@ static void hermite(const tyni_integral *it, float s, float *out)
 
 void tyni_integral_at(const tyni_integral *it, float t, float *out)
 {
-    float w;
+    const tyni_path *p = &it->path;
+    float psi;
     t = tyni_clampf(t, it->t0, it->t1);
-    if (!it->spot) {
+    if (!it->local) {
         for (int32_t i = 0; i < it->count; i++) {
             float d = it->sigma[i];
             out[i] = t * tyni_num_fog(d * t);
@@ -201,8 +193,8 @@ void tyni_integral_at(const tyni_integral *it, float t, float *out)
         }
         return;
     }
-    w = tyni_maxf(it->w0 + it->w1 * t, 1e-4f * it->wr);
-    hermite(it, tyni_clampf(((t - it->tr) / w - it->q0) / it->step, 0.0f, (float)(it->knots - 1)), out);
+    psi = tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h);
+    hermite(it, it->step > 0.0f ? tyni_clampf(psi / it->step, 0.0f, (float)(it->knots - 1)) : 0.0f, out);
 }
 
 void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3])
@@ -211,7 +203,7 @@ void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_v
     static const float at[4] = {0.0694318442f, 0.330009478f, 0.669990522f, 0.930568156f};
     static const float weight[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
     float value[3];
-    path p;
+    tyni_path p;
     if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
             norm[c] = t1 * tyni_num_fog(medium->sigma[c] * t1);
@@ -222,8 +214,8 @@ void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_v
         return;
     path_begin(&p, lamp, v, t0, t1);
     for (int32_t i = 0; i < 4; i++) {
-        path_value(&p, medium, lamp, v, p.q0 + (p.q1 - p.q0) * at[i], value);
+        path_value(&p, medium, lamp, v, p.span * at[i], value);
         for (int32_t c = 0; c < 3; c++)
-            norm[c] += (p.q1 - p.q0) * weight[i] * value[c];
+            norm[c] += p.span * weight[i] * value[c];
     }
 }

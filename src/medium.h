@@ -34,20 +34,31 @@ void tyni_medium_mix(const tyni_medium *medium, float cosine, float mix[3]);
 
 #define TYNI_MEDIUM_KNOTS 33
 
+/* The part of a ray that a light at a point can reach, by the angle psi under which the light sees it, from 0 at t0. With T = t
+ * - (closest approach) and h the distance there, dt / r^2 = d psi / h (method.md section 2): the light's singularity is gone,
+ * and what is left under the integral is smooth. Angles are taken from t0, not from the closest approach: small ones keep their
+ * precision when the ray runs straight at the light. */
+typedef struct tyni_path {
+    float t0, t1;
+    float near_t; /* t of the closest approach */
+    float from;   /* T at t0 */
+    float h;      /* at least the light's radius: the ray into the light stays finite */
+    float span;   /* psi at t1, 0 .. pi */
+} tyni_path;
+
 /* The light gathered from t0 to t along one ray, if all of it were lit, in up to three channels:
- *   directional:  integral of e^(-sigma t); the phase function is constant and comes in at the pixel
- *   spot:         integral of e^(-sigma (t + r)) mix(cos) / r^2; r is the distance to the light
- * The first is closed. The second is smooth in q = (t - tr) / w(t), w the depth seen from the light: dt / r^2 = dq times a
- * bounded factor, with no singularity near the light. It is tabulated there once per ray by Simpson's rule and read
- * by cubic Hermite interpolation, for any phase function. */
+ *   directional:    integral of e^(-sigma t); the phase function is constant and comes in at the pixel
+ *   spot and point: integral of e^(-sigma (t + r)) mix(cos) / r^2; r is the distance to the light
+ * The first is closed. The second is tabulated once per ray over psi by Simpson's rule and read by cubic Hermite interpolation,
+ * for any phase function. */
 typedef struct tyni_integral {
     int32_t channels[3];
     int32_t count; /* of channels */
     float sigma[3];
     float t0, t1; /* t1 <= t0: nothing is gathered */
-    int spot;
-    float tr, w0, w1, wr; /* w(t) = w0 + w1 t; wr = w(tr) */
-    float q0, step;       /* knots */
+    int local;    /* not directional */
+    tyni_path path;
+    float step; /* psi from knot to knot */
     int32_t knots;
     float sum[3][TYNI_MEDIUM_KNOTS];   /* integral up to the knot */
     float value[3][TYNI_MEDIUM_KNOTS]; /* the integrand there, times step */

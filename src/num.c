@@ -90,3 +90,34 @@ void tyni_num_sincos(float x, float *sine, float *cosine)
     if ((n + 1) & 2)
         *cosine = -*cosine;
 }
+
+/* 0 <= x <= tan(pi / 8) */
+static float atan_small(float x)
+{
+    float q = x * x, p;
+    p = 1.0f / 17.0f;
+    p = -p * q + 1.0f / 15.0f;
+    p = -p * q + 1.0f / 13.0f;
+    p = -p * q + 1.0f / 11.0f;
+    p = -p * q + 1.0f / 9.0f;
+    p = -p * q + 1.0f / 7.0f;
+    p = -p * q + 1.0f / 5.0f;
+    p = -p * q + 1.0f / 3.0f;
+    return x - x * q * p;
+}
+
+float tyni_num_atan2(float y, float x)
+{
+    float a = tyni_absf(y), b = tyni_absf(x), low = tyni_minf(a, b), high = tyni_maxf(a, b), angle;
+    if (!(high > 0.0f))
+        return 0.0f;
+    if (low > 0.414213562f * high)
+        angle = 0.25f * TYNI_PI + (low < high ? -atan_small((high - low) / (high + low)) : 0.0f);
+    else
+        angle = atan_small(low / high);
+    if (a > b)
+        angle = 0.5f * TYNI_PI - angle;
+    if (x < 0.0f)
+        angle = TYNI_PI - angle;
+    return y < 0.0f ? -angle : angle;
+}

@@ -17,4 +17,7 @@ float tyni_num_log(float x);
 /* |x| <= 8192, absolute error below 3e-7. */
 void tyni_num_sincos(float x, float *sine, float *cosine);
 
+/* Angle of the point (x, y) to the x axis, -pi .. pi, relative error below 3e-7 (small angles too); 0 for (0, 0). */
+float tyni_num_atan2(float y, float x);
+
 #endif

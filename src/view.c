@@ -90,6 +90,7 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
         lamp->distance = tyni_vec_length(lamp->position);
         lamp->to_light = tyni_vec_normalise(lamp->position);
         tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cos_half);
+        lamp->radius = tyni_maxf(1e-2f * view->near_depth, 1e-4f * lamp->distance);
         lamp->at_camera = lamp->distance <= 1e-4f * view->near_depth;
     }
     epipole(lamp, view);
