@@ -39,6 +39,26 @@ have() {
     command -v "$1" >/dev/null 2>&1
 }
 
+# part COMMAND...: a script or program with a closing line of its own, which is added up and taken out of what is shown.
+part() {
+    echo "== $*"
+    part_log=$B/part.log
+    "$@" >"$part_log" 2>&1
+    part_status=$?
+    part_closing=$(tail -n 1 "$part_log" | sed -n 's/^\([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed$/\1 \2/p')
+    if [ -z "$part_closing" ]; then
+        cat "$part_log"
+        fail "$*: ended with status $part_status and no total"
+        return
+    fi
+    sed '$d' "$part_log"
+    passed=$((passed + ${part_closing% *}))
+    failed=$((failed + ${part_closing#* }))
+    if [ "$part_status" -ne 0 ] && [ "${part_closing#* }" -eq 0 ]; then
+        fail "$*: status $part_status"
+    fi
+}
+
 # The closing line; its status is the script's.
 total() {
     echo "$passed passed, $failed failed"
