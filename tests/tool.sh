@@ -58,7 +58,7 @@ expect 'ending' 2 "$tyndall" render good.scene -o o/a.jpg
 expect 'ending of --depth' 2 "$tyndall" render good.scene -o o/a.png --depth o/d.png
 expect 'one name twice' 2 "$tyndall" render good.scene -o o/a.pfm --scatter o/a.pfm
 for bad in '--size 0x9' '--size 10' '--size 10x' '--size 10x10x10' '--size 32769x1' '--size -1x1' '--method tree' '--method hybrid' \
-    '--method prefiltered' '--rays tree' '--steps 0' '--steps 4097' '--steps 1e2' '--slices 1' '--slices 65537' '--samples 1' \
+    '--method prefiltered' '--rays tree' '--steps 0' '--steps 4097' '--steps 1e2' '--slices 7' '--slices 65537' '--samples 1' \
     '--initial-step 3' '--initial-step 128' '--break 0' '--break 1.5' '--break x' '--break nan' '--shadow-size 0' \
     '--shadow-size 16385' '--preset best' '--threads 0' '--threads 65' '--threads two' '--exposure 0' '--exposure -1' \
     '--exposure inf' '--debug tree' '--debug basis' '--gather ivb' '--downscale 2' '--bases 8' '--weights average' \

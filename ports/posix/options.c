@@ -141,7 +141,7 @@ static int take(options *o, const char *name, const char *value)
     if (strcmp(name, "--steps") == 0)
         return count_option(name, value, 1, 4096, &r->steps);
     if (strcmp(name, "--slices") == 0)
-        return count_option(name, value, 2, 65536, &r->slices);
+        return count_option(name, value, 8, 65536, &r->slices);
     if (strcmp(name, "--samples") == 0)
         return count_option(name, value, 2, 65536, &r->samples);
     if (strcmp(name, "--shadow-size") == 0)
@@ -235,7 +235,7 @@ void options_help(void)
            "  --method M         epipolar (default), march (every pixel), subsample, none\n"
            "  --rays R           words (default, exact on the row), steps (fixed steps, see --steps)\n"
            "  --steps N          per ray, 1 .. 4096\n"
-           "  --slices N         epipolar slices, 2 .. 65536\n"
+           "  --slices N         epipolar slices, 8 .. 65536\n"
            "  --samples N        along a slice, 2 .. 65536\n"
            "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
            "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
