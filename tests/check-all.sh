@@ -29,7 +29,7 @@ variant() {
         return
     fi
     echo "-- $name: $cc $flags"
-    if quiet "$name: builds" "$MAKE" -j2 B="$B/$name" CC="$cc" CFLAGS="$flags" "$B/$name/tests" "$B/$name/tyndall"; then
+    if quiet "$name: builds" "$MAKE" -s -j2 B="$B/$name" CC="$cc" CFLAGS="$flags" "$B/$name/tests" "$B/$name/tyndall"; then
         part "$B/$name/tests" "$@"
     fi
 }
@@ -45,7 +45,7 @@ check_format() {
 
 check_compilers() {
     if have clang; then
-        if quiet 'clang: builds' "$MAKE" -j2 B="$B/clang" CC=clang all "$B/clang/tests"; then
+        if quiet 'clang: builds' "$MAKE" -s -j2 B="$B/clang" CC=clang all "$B/clang/tests"; then
             part env B="$B/clang" CC=clang CFLAGS=-O2 MAKE="$MAKE" sh tests/run.sh
         fi
     else
@@ -95,7 +95,7 @@ check_valgrind() {
         skip 'no valgrind'
         return
     fi
-    if quiet 'valgrind: builds' "$MAKE" -j2 B="$B/valgrind" CFLAGS='-O1 -g' "$B/valgrind/tests"; then
+    if quiet 'valgrind: builds' "$MAKE" -s -j2 B="$B/valgrind" CFLAGS='-O1 -g' "$B/valgrind/tests"; then
         part valgrind -q --error-exitcode=9 --leak-check=full "$B/valgrind/tests" api render golden
     fi
 }
@@ -199,7 +199,7 @@ check_models() {
 }
 
 check_shared() {
-    quiet 'builds' "$MAKE" -j2 B="$B/main" "$B/main/tyndall" || return
+    quiet 'builds' "$MAKE" -s -j2 B="$B/main" "$B/main/tyndall" || return
     if [ -d "$shared/reference" ]; then check_reference; else skip "no $shared/reference"; fi
     if [ -d "$shared/data" ]; then check_models; else skip "no $shared/data"; fi
 }
