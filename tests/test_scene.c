@@ -224,6 +224,21 @@ static void test_values(void)
     CHECK(scene_camera_make(&s, 64, 48, &camera) == TYN_OK);
     CHECK_NEAR(camera.forward[2], -1.0f, 1e-6);
     scene_free(&s);
+    TEST("vectors that only point somewhere may have any length");
+    CHECK(scene_load(&s,
+                     files_text("case.scene", FIRST IMAGE BACK "camera position 1 2 3 target 1 2 1e25 up 0 1e30 0 fov_y 50 "
+                                                               "near 1 far 9\n"),
+                     &error) == 0);
+    CHECK(scene_camera_make(&s, 64, 48, &camera) == TYN_OK);
+    CHECK_NEAR(camera.forward[2], 1.0f, 1e-6);
+    scene_free(&s);
+    CHECK(scene_load(&s,
+                     files_text("case.scene", FIRST IMAGE BACK "camera position 0 0 0 target 1e-30 0 0 up 0 1e-30 0 fov_y 50 "
+                                                               "near 1 far 9\n"),
+                     &error) == 0);
+    CHECK(scene_camera_make(&s, 64, 48, &camera) == TYN_OK);
+    CHECK_NEAR(camera.forward[0], 1.0f, 1e-6);
+    scene_free(&s);
 }
 
 static void test_nul(void)

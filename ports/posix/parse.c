@@ -193,6 +193,24 @@ static int read_image(parser *p)
     return at_end(p);
 }
 
+/* The library squares these vectors in float; what only points somewhere gets a length that can bear it. */
+static void settle_camera(scene_camera *c, const double forward[3])
+{
+    double up[3], up_length, distance = length(forward), wanted = distance;
+    for (int i = 0; i < 3; i++)
+        up[i] = (double)c->up[i];
+    up_length = length(up);
+    if (distance > 1e15)
+        wanted = 1e12;
+    if (distance < 1e-15)
+        wanted = 1.0;
+    for (int i = 0; i < 3; i++) {
+        c->up[i] = (float)(up[i] / up_length);
+        if (wanted < distance || wanted > distance)
+            c->target[i] = (float)((double)c->position[i] + forward[i] / distance * wanted);
+    }
+}
+
 static int read_camera(parser *p)
 {
     scene_camera *c = &p->s->camera;
@@ -217,6 +235,7 @@ static int read_camera(parser *p)
         return text_fail(&p->t, keys[2].seen ? keys[2].at : p->directive, "up is parallel to the view");
     if (!(c->near_depth < c->far_depth))
         return text_fail(&p->t, keys[5].at, "must be beyond near");
+    settle_camera(c, forward);
     return 0;
 }
 
