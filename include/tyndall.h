@@ -164,6 +164,7 @@ typedef struct tyn_shadow {
 } tyn_shadow;
 
 #define TYN_MAX_SHADOW 16384
+#define TYN_MAX_MAPS 8
 
 typedef enum tyn_light_kind { TYN_LIGHT_DIRECTIONAL = 0, TYN_LIGHT_SPOT = 1 } tyn_light_kind;
 
@@ -264,10 +265,12 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_MEMORY(width, height, slices, samples, shadow_size, lights, workers)                                               \
     (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) + TYNI_BYTES(slices, 8) +        \
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
-     (size_t)(workers) * (2 * TYNI_BYTES(shadow_size, 4) + 3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +           \
+     (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(shadow_size) + 4, 4) +                                       \
+                          3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           2 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 #define TYN_CONTEXT_BYTES 256
 #define TYN_STATS_BYTES 128
+#define TYN_ROW_BYTES 1088
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))
 #define TYNI_SAMPLES(width, height, samples)                                                                                   \

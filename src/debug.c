@@ -56,15 +56,16 @@ static void paint_scatter(const tyni_view *view, const tyni_slices *slices, cons
 
 static int outside(const tyni_view *view, const tyni_lamp *lamp, int32_t x, int32_t y, float depth)
 {
-    tyni_vec3 d = tyni_view_direction(view, (float)x + 0.5f, (float)y + 0.5f), p;
-    float u, v, w;
-    if (!lamp->depth)
-        return 1;
-    p = tyni_vec_scale(d, tyni_view_depth(view, depth));
-    u = tyni_vec_dot(lamp->u.v, p) + lamp->u.c;
-    v = tyni_vec_dot(lamp->v.v, p) + lamp->v.c;
-    w = tyni_vec_dot(lamp->w.v, p) + lamp->w.c;
-    return !(w > 0.0f && u >= 0.0f && v >= 0.0f && u <= w * (float)lamp->size && v <= w * (float)lamp->size);
+    tyni_vec3 d = tyni_view_direction(view, (float)x + 0.5f, (float)y + 0.5f);
+    tyni_vec3 p = tyni_vec_scale(d, tyni_view_depth(view, depth));
+    for (int32_t i = 0; i < lamp->map_count; i++) {
+        const tyni_map *map = &lamp->maps[i];
+        float u = tyni_vec_dot(map->u.v, p) + map->u.c, v = tyni_vec_dot(map->v.v, p) + map->v.c;
+        float w = tyni_vec_dot(map->w.v, p) + map->w.c, size = (float)map->size;
+        if (w > 0.0f && u >= 0.0f && v >= 0.0f && u <= w * size && v <= w * size)
+            return 0;
+    }
+    return 1;
 }
 
 void tyni_debug_pixel(tyn_debug debug, const tyni_view *view, const tyni_lamp *lamp, const tyni_slices *slices,

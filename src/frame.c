@@ -42,9 +42,11 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
     size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
+    size_t row = tyni_row_room(c->config.shadow_size, 1);
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
-    s->threshold = tyni_arena_take(&arena, 2 * (size_t)c->config.shadow_size, sizeof *s->threshold);
-    s->split = tyni_arena_take(&arena, (size_t)c->config.shadow_size, sizeof *s->split);
+    s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
+    s->threshold = tyni_arena_take(&arena, 2 * row, sizeof *s->threshold);
+    s->split = tyni_arena_take(&arena, row, sizeof *s->split);
     s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
     s->value[0] = tyni_arena_take(&arena, samples, sizeof *s->value[0]);
     s->value[1] = tyni_arena_take(&arena, samples, sizeof *s->value[1]);
@@ -64,8 +66,7 @@ static int ray_range(const pass *p, tyni_vec3 v, float s, float *t0, float *t1)
 }
 
 /* Visibility of one ray in the kept channels. */
-static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, uint32_t position, tyn_stats *stats,
-                      float value[2])
+static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, float at, tyn_stats *stats, float value[2])
 {
     const tyni_medium *medium = &p->medium;
     tyni_integral it;
@@ -85,7 +86,7 @@ static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, 
             tyni_ray_walk(&p->lamp, &it, v, light);
             stats->walks++;
         } else {
-            tyni_ray_row(row, position, &p->lamp, &it, v, light);
+            tyni_ray_row(row, at, &p->lamp, &it, v, light);
         }
     }
     tyni_integral_norm(medium, &p->lamp, v, t0, t1, norm);
@@ -139,7 +140,6 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
     tyni_scratch s;
     tyni_slice slice;
-    tyni_row row;
     scratch_of(p->context, worker, &s);
     memset(entries, 0, sizeof *entries * (size_t)p->field.pitch);
     tyni_slice_line(&slice, &p->slices, &p->lamp, &p->view, index);
@@ -156,13 +156,14 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
         tyni_debug_mark(entries, s.rays, s.breaks, slice.first, slice.last);
         return;
     }
-    tyni_row_build(&row, s.threshold, s.split, config->shadow_size, &p->slices, &slice, &p->lamp, reach_of(p, &slice, s.depth));
+    tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, 1), &p->slices, &slice, &p->lamp,
+                   reach_of(p, &slice, s.depth));
     for (int32_t j = tyni_sample_next(s.rays, slice.first, slice.last); j <= slice.last;
          j = tyni_sample_next(s.rays, j + 1, slice.last)) {
         float at = tyni_slice_p(&p->slices, j), length, value[2];
         tyni_vec3 d = tyni_vec_mad(slice.a, at, slice.b);
         length = tyni_vec_length(d);
-        ray_value(p, &row, tyni_vec_scale(d, 1.0f / length), s.depth[j] * length, tyni_row_position(&row, at), s.stats, value);
+        ray_value(p, s.row, tyni_vec_scale(d, 1.0f / length), s.depth[j] * length, at, s.stats, value);
         s.value[0][j] = value[0];
         s.value[1][j] = value[1];
     }
@@ -187,7 +188,7 @@ static void grid_job(void *argument, int32_t index, int32_t worker)
         float length = tyni_vec_length(d), value[2], t0, t1;
         tyni_vec3 v = tyni_vec_scale(d, 1.0f / length);
         s.depth[i] = tyni_view_depth(&p->view, depth[x]);
-        ray_value(p, NULL, v, s.depth[i] * length, 0, s.stats, value);
+        ray_value(p, NULL, v, s.depth[i] * length, 0.0f, s.stats, value);
         s.depth[i] = ray_range(p, v, s.depth[i] * length, &t0, &t1) ? t1 / length : 0.0f;
         s.value[0][i] = value[0];
         s.value[1][i] = value[1];
@@ -455,8 +456,9 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     c->light = g->lights > 1 ? tyni_arena_take(arena, (size_t)g->width * (size_t)g->height, 3 * sizeof *c->light) : NULL;
     c->counts = tyni_arena_take(arena, (size_t)g->workers, sizeof *c->counts);
     /* the parts of a scratch, in the order of scratch_of */
-    tyni_arena_take(&one, 2 * (size_t)g->shadow_size, sizeof(uint16_t));
-    tyni_arena_take(&one, (size_t)g->shadow_size, sizeof(float));
+    tyni_arena_take(&one, 1, TYN_ROW_BYTES);
+    tyni_arena_take(&one, 2 * tyni_row_room(g->shadow_size, 1), sizeof(uint16_t));
+    tyni_arena_take(&one, tyni_row_room(g->shadow_size, 1), sizeof(float));
     for (int32_t i = 0; i < 3; i++)
         tyni_arena_take(&one, samples, sizeof(float));
     for (int32_t i = 0; i < 2; i++)

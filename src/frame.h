@@ -4,13 +4,15 @@
 
 #include "arena.h"
 #include "jobs.h"
+#include "row.h"
 
 #include "base.h"
 
 /* What one worker needs for one slice: small enough for its caches. */
 typedef struct tyni_scratch {
-    uint16_t *threshold;     /* 2 * shadow_size */
-    float *split;            /* shadow_size */
+    tyni_row *row;
+    uint16_t *threshold;     /* 2 * tyni_row_room */
+    float *split;            /* tyni_row_room */
     float *depth;            /* samples */
     float *value[2];         /* samples: visibility, low and high */
     uint32_t *breaks, *rays; /* bits */

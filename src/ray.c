@@ -3,38 +3,42 @@
 
 #include "base.h"
 
-/* The sum over lit intervals in the making: switched on and off at rising t. */
+/* The sum over intervals in the making: switched on and off at rising t within a piece, in any order of pieces. What is summed
+ * is whatever differs from `outside`: shadows where all else is lit, light where all else is dark. */
 typedef struct meter {
     const tyni_integral *integral;
-    float *light;
-    int on;
+    float *sum;
+    int outside, on;
 } meter;
 
-static void meter_begin(meter *m, const tyni_integral *integral, float *light)
+static void meter_begin(meter *m, const tyni_integral *integral, int outside, float *sum)
 {
     m->integral = integral;
-    m->light = light;
+    m->sum = sum;
+    m->outside = outside;
     m->on = 0;
     for (int32_t i = 0; i < integral->count; i++)
-        light[i] = 0.0f;
+        sum[i] = 0.0f;
 }
 
-static void meter_switch(meter *m, int on, float t)
+static void meter_lit(meter *m, int lit, float t)
 {
     float at[3];
+    int on = lit != m->outside;
     if (on == m->on)
         return;
     tyni_integral_at(m->integral, t, at);
     for (int32_t i = 0; i < m->integral->count; i++)
-        m->light[i] += on ? -at[i] : at[i];
+        m->sum[i] += on ? -at[i] : at[i];
     m->on = on;
 }
 
 static void meter_end(meter *m)
 {
-    meter_switch(m, 0, m->integral->t1);
+    float all[3];
+    tyni_integral_at(m->integral, m->integral->t1, all);
     for (int32_t i = 0; i < m->integral->count; i++)
-        m->light[i] = tyni_maxf(m->light[i], 0.0f);
+        m->sum[i] = tyni_clampf(m->outside ? all[i] - m->sum[i] : m->sum[i], 0.0f, all[i]);
 }
 
 /* A form along a ray: c + t * d. */
@@ -74,12 +78,12 @@ typedef struct track {
     float t[2], w[2];
 } track;
 
-static int track_begin(track *k, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+static int track_begin(track *k, const tyni_map *map, tyni_vec3 v, const float part[2])
 {
-    line lu = along(&lamp->u, v), lv = along(&lamp->v, v), lz = along(&lamp->z, v), lw = along(&lamp->w, v), edge;
-    float size = (float)lamp->size, u[2], y[2], z[2];
-    k->t[0] = t0;
-    k->t[1] = t1;
+    line lu = along(&map->u, v), lv = along(&map->v, v), lz = along(&map->z, v), lw = along(&map->w, v), edge;
+    float size = (float)map->size, u[2], y[2], z[2];
+    k->t[0] = part[0];
+    k->t[1] = part[1];
     edge.c = lw.c - 1e-6f;
     edge.d = lw.d;
     line_clip(edge, k->t);
@@ -136,22 +140,22 @@ static axis axis_begin(float x, float dx, int32_t size)
     return a;
 }
 
-static void walk_texels(const tyni_lamp *lamp, const track *k, meter *m)
+static void walk_texels(const tyni_map *map, const track *k, meter *m)
 {
-    axis u = axis_begin(k->u, k->du, lamp->size), v = axis_begin(k->v, k->dv, lamp->size);
+    axis u = axis_begin(k->u, k->du, map->size), v = axis_begin(k->v, k->dv, map->size);
     float s = 0.0f, za = k->z;
     /* every step leaves a texel for good: at most 2 * size of them, whatever rounding does */
-    for (int32_t left = 2 * lamp->size + 2; left > 0; left--) {
-        float depth = lamp->depth[(ptrdiff_t)v.texel * lamp->size + u.texel];
+    for (int32_t left = 2 * map->size + 2; left > 0; left--) {
+        float depth = map->depth[(ptrdiff_t)v.texel * map->size + u.texel];
         float end = tyni_minf(tyni_minf(u.next, v.next), 1.0f), zb = k->z + end * k->dz;
         int open = !(depth > 0.0f), lit_a, lit_b;
         depth = tyni_minf(depth, 1.0f);
         lit_a = open || za >= depth;
         lit_b = open || zb >= depth;
-        if (lit_a != m->on)
-            meter_switch(m, lit_a, track_t(k, s));
+        if ((lit_a != m->outside) != m->on)
+            meter_lit(m, lit_a, track_t(k, s));
         if (lit_b != lit_a)
-            meter_switch(m, lit_b, track_t(k, s + (end - s) * ((depth - za) / (zb - za))));
+            meter_lit(m, lit_b, track_t(k, s + (end - s) * ((depth - za) / (zb - za))));
         if (end >= 1.0f)
             return;
         if (u.next <= v.next) {
@@ -161,7 +165,7 @@ static void walk_texels(const tyni_lamp *lamp, const track *k, meter *m)
             v.texel += v.step;
             v.next += v.pitch;
         }
-        if ((uint32_t)u.texel >= (uint32_t)lamp->size || (uint32_t)v.texel >= (uint32_t)lamp->size)
+        if ((uint32_t)u.texel >= (uint32_t)map->size || (uint32_t)v.texel >= (uint32_t)map->size)
             return;
         s = end;
         za = zb;
@@ -170,22 +174,34 @@ static void walk_texels(const tyni_lamp *lamp, const track *k, meter *m)
 
 void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, float *light)
 {
-    int outside = lamp->kind == TYN_LIGHT_DIRECTIONAL || !lamp->depth;
+    /* parts of the ray that no map has covered yet */
+    float part[TYN_MAX_MAPS + 1][2];
+    int32_t parts = 1;
     meter m;
     track k;
-    meter_begin(&m, it, light);
+    meter_begin(&m, it, lamp->outside, light);
     if (!(it->t0 < it->t1))
         return;
-    meter_switch(&m, outside, it->t0);
-    if (lamp->depth && track_begin(&k, lamp, v, it->t0, it->t1)) {
-        walk_texels(lamp, &k, &m);
-        meter_switch(&m, outside, k.t[1]);
-    }
+    part[0][0] = it->t0;
+    part[0][1] = it->t1;
+    for (int32_t i = 0; i < lamp->map_count; i++)
+        for (int32_t n = parts - 1; n >= 0; n--) {
+            float end = part[n][1];
+            if (!(part[n][0] < end) || !track_begin(&k, &lamp->maps[i], v, part[n]))
+                continue;
+            walk_texels(&lamp->maps[i], &k, &m);
+            meter_lit(&m, lamp->outside, k.t[1]);
+            part[n][1] = k.t[0];
+            if (k.t[1] < end && parts <= TYN_MAX_MAPS) {
+                part[parts][0] = k.t[1];
+                part[parts++][1] = end;
+            }
+        }
     meter_end(&m);
 }
 
 /* Visibility of columns i .. i + 31 of the row; bits past its end are 0. */
-static uint32_t visibility(const tyni_row *row, int32_t i, uint32_t position)
+static uint32_t visibility(const tyni_piece *row, int32_t i, uint32_t position)
 {
     uint32_t bits = 0;
     int32_t n = tyni_mini(32, 2 * row->steps - i);
@@ -200,7 +216,7 @@ static float border_t(line r, line w, float at)
     return (at * w.c - r.c) / (r.d - at * w.d);
 }
 
-static void row_words(const tyni_row *row, uint32_t position, line r, line w, float from, float to, meter *m)
+static void row_words(const tyni_piece *row, uint32_t position, line r, line w, float from, float to, meter *m)
 {
     int32_t a = tyni_clampi((int32_t)from, 0, row->steps - 1), b = tyni_clampi(tyni_ceili(to) - 1, a, row->steps - 1);
     int32_t first = 2 * a + (from - (float)a >= row->split[a]), last = 2 * b + (to - (float)b > row->split[b]);
@@ -215,83 +231,96 @@ static void row_words(const tyni_row *row, uint32_t position, line r, line w, fl
             bits = bits >> (last - i) & 1u ? bits | after : bits & ~after;
         }
         /* the first column of a word changes at its border, or where the ray comes in */
-        if ((int)(bits & 1u) != m->on)
-            meter_switch(m, (int)(bits & 1u), border_t(r, w, i <= first ? tyni_maxf(from, 0.0f) : tyni_row_edge(row, i)));
+        if ((int)(bits & 1u) != (m->on ^ m->outside))
+            meter_lit(m, (int)(bits & 1u), border_t(r, w, i <= first ? tyni_maxf(from, 0.0f) : tyni_row_edge(row, i)));
         changes = bits ^ (bits << 1 | (bits & 1u));
         for (; changes; changes &= changes - 1) {
             int32_t k = tyni_ctz32(changes);
-            meter_switch(m, (int)(bits >> k & 1u), border_t(r, w, tyni_row_edge(row, i + k)));
+            meter_lit(m, (int)(bits >> k & 1u), border_t(r, w, tyni_row_edge(row, i + k)));
         }
     }
+    meter_lit(m, m->outside, border_t(r, w, tyni_minf(to, (float)row->steps)));
 }
 
-/* Step coordinates of the ray's ends. */
-static void row_span(line r, line w, const tyni_integral *it, float *from, float *to)
+/* Step coordinates of the ray's ends, of its part in front of the map. 0: none is. */
+static int row_span(line r, line w, float part[2], float *from, float *to)
 {
-    *from = line_at(r, it->t0) / tyni_maxf(line_at(w, it->t0), 1e-9f);
-    *to = line_at(r, it->t1) / tyni_maxf(line_at(w, it->t1), 1e-9f);
+    line edge = w;
+    edge.c -= 1e-6f;
+    line_clip(edge, part);
+    if (!(part[0] < part[1]))
+        return 0;
+    *from = line_at(r, part[0]) / line_at(w, part[0]);
+    *to = line_at(r, part[1]) / line_at(w, part[1]);
+    return 1;
 }
 
-void tyni_ray_row(const tyni_row *row, uint32_t position, const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v,
-                  float *light)
+void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, float *light)
 {
-    int outside = lamp->kind == TYN_LIGHT_DIRECTIONAL || !lamp->depth;
+    uint32_t position = tyni_row_position(row, p);
     meter m;
-    meter_begin(&m, it, light);
+    meter_begin(&m, it, lamp->outside, light);
     if (!(it->t0 < it->t1))
         return;
-    meter_switch(&m, outside, it->t0);
-    if (row->steps > 0) {
-        line r = along(&row->r, v), w = along(&row->w, v);
-        float from, to, end = (float)row->steps;
-        row_span(r, w, it, &from, &to);
-        if (from < end && to > 0.0f && from < to) {
-            row_words(row, position, r, w, from, tyni_minf(to, end), &m);
-            if (to > end)
-                meter_switch(&m, outside, border_t(r, w, end));
-        }
+    for (int32_t i = 0; i < row->count; i++) {
+        const tyni_piece *piece = &row->pieces[i];
+        line r = along(&piece->r, v), w = along(&piece->w, v);
+        float part[2], from, to;
+        part[0] = it->t0;
+        part[1] = it->t1;
+        if (!row_span(r, w, part, &from, &to))
+            continue;
+        /* a piece's columns begin and end inside its first and last step where another piece goes on */
+        from = tyni_maxf(from, piece->from);
+        to = tyni_minf(to, piece->to);
+        if (from < to)
+            row_words(piece, position, r, w, from, to, &m);
     }
     meter_end(&m);
 }
 
 int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, tyni_vec3 v)
 {
-    line r = along(&row->r, v), w = along(&row->w, v);
-    float from, to, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
-    if (row->steps < 1)
+    float part[2], from, to, texels = 0.0f, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
+    if (row->count < 1)
         return 0;
-    row_span(r, w, it, &from, &to);
+    for (int32_t i = 0; i < row->count; i++) {
+        part[0] = it->t0;
+        part[1] = it->t1;
+        if (row_span(along(&row->pieces[i].r, v), along(&row->pieces[i].w, v), part, &from, &to))
+            texels += tyni_maxf(tyni_minf(to, row->pieces[i].to) - tyni_maxf(from, row->pieces[i].from), 0.0f);
+    }
     /* a texel's share of the light, at most: 1 / texels in thin air, its optical depth in thick */
-    return tyni_maxf(1.0f, depth) > 0.05f * (to - from);
+    return tyni_maxf(1.0f, depth) > 0.05f * texels;
 }
 
-static int point_lit(const tyni_lamp *lamp, line u, line v, line z, line w, float t)
+static int point_lit(const tyni_lamp *lamp, tyni_vec3 v, float t)
 {
-    float wt = line_at(w, t), depth, x, y;
-    int outside = lamp->kind == TYN_LIGHT_DIRECTIONAL;
-    if (!lamp->depth)
-        return 1;
-    if (!(wt > 0.0f))
-        return outside;
-    x = line_at(u, t) / wt;
-    y = line_at(v, t) / wt;
-    if (!(x >= 0.0f && y >= 0.0f && x < (float)lamp->size && y < (float)lamp->size))
-        return outside;
-    depth = lamp->depth[(ptrdiff_t)(int32_t)y * lamp->size + (int32_t)x];
-    return !(depth > 0.0f) || line_at(z, t) / wt >= tyni_minf(depth, 1.0f);
+    for (int32_t i = 0; i < lamp->map_count; i++) {
+        const tyni_map *map = &lamp->maps[i];
+        float w = line_at(along(&map->w, v), t), depth, x, y;
+        if (!(w > 0.0f))
+            continue;
+        x = line_at(along(&map->u, v), t) / w;
+        y = line_at(along(&map->v, v), t) / w;
+        if (!(x >= 0.0f && y >= 0.0f && x < (float)map->size && y < (float)map->size))
+            continue;
+        depth = map->depth[(ptrdiff_t)(int32_t)y * map->size + (int32_t)x];
+        return !(depth > 0.0f) || line_at(along(&map->z, v), t) / w >= tyni_minf(depth, 1.0f);
+    }
+    return lamp->outside;
 }
 
 void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float t0, float t1, int32_t steps,
                     float light[3])
 {
-    line lu = along(&lamp->u, v), lv = along(&lamp->v, v), lz = along(&lamp->z, v), lw = along(&lamp->w, v);
     float dt = (t1 - t0) / (float)steps, density[3];
     light[0] = light[1] = light[2] = 0.0f;
     if (!(dt > 0.0f))
         return;
     for (int32_t i = 0; i < steps; i++) {
         float t = t0 + ((float)i + 0.5f) * dt;
-        if (!point_lit(lamp, lu, lv, lz, lw, t))
+        if (!point_lit(lamp, v, t))
             continue;
         tyni_integral_density(medium, lamp, v, t, density);
         for (int32_t c = 0; c < 3; c++)

@@ -16,9 +16,9 @@
  * texels as well. The library's own truth. */
 void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *integral, tyni_vec3 v, float *light);
 
-/* Against a row of thresholds: 32 columns a time become a word of visibility, and its transitions are found by bit scans.
- * position: tyni_row_position of the ray. */
-void tyni_ray_row(const tyni_row *row, uint32_t position, const tyni_lamp *lamp, const tyni_integral *integral, tyni_vec3 v,
+/* Against a row of thresholds: 32 columns a time become a word of visibility, and its transitions are found by bit scans. p: of
+ * the ray on the slice's line. */
+void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyni_integral *integral, tyni_vec3 v,
                   float *light);
 
 /* True where columns are so coarse for this ray that their thresholds would show (near the epipole): walk instead. */

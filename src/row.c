@@ -4,75 +4,53 @@
 #include "base.h"
 
 /* Columns of a slice as directions (n, d) in half a circle: n = x and d = 1 - y / distance, so that n / d is the tangent of the
- * column's angle seen from the light (or x itself for a directional light). Clipped to f . (n, d) >= 0. */
+ * column's angle seen from the light (or x itself for a directional light). They begin at (0, 1), the column through the
+ * camera. */
 typedef struct fan {
-    float n[2], d[2]; /* from, to */
-    int empty;
+    float n[2], d[2]; /* from, to: less than half a circle */
 } fan;
 
+static int fan_empty(const fan *f)
+{
+    return !(f->d[0] * f->n[1] - f->n[0] * f->d[1] > 0.0f);
+}
+
+/* Clips to fn * n + fd * d >= 0. */
 static void fan_clip(fan *f, float fn, float fd)
 {
     float a = f->n[0] * fn + f->d[0] * fd, b = f->n[1] * fn + f->d[1] * fd;
-    int32_t out;
-    if (f->empty || (a >= 0.0f && b >= 0.0f))
+    int32_t out = a < 0.0f ? 0 : 1;
+    if (a >= 0.0f && b >= 0.0f)
         return;
     if (a < 0.0f && b < 0.0f) {
-        f->empty = 1;
+        f->n[1] = f->n[0];
+        f->d[1] = f->d[0];
         return;
     }
-    out = a < 0.0f ? 0 : 1;
     a = tyni_absf(a);
     b = tyni_absf(b);
     f->n[out] = (f->n[0] * b + f->n[1] * a) / (a + b);
     f->d[out] = (f->d[0] * b + f->d[1] * a) / (a + b);
 }
 
-/* All columns in front of the light: w = n * wn + d * wd > 0. A spot's columns span half a circle, whose ends are opposite: no
- * linear clip can cut that, so the edge is placed directly. */
-static void fan_begin(fan *f, int spot, float wn, float wd)
+/* The part of a fan that falls on a map, and where its ends do, in texels; 0 if it misses the map. */
+static int fan_on_map(fan *f, const tyni_map *map, const tyni_slice *slice, float u[2], float v[2])
 {
-    f->empty = 0;
-    f->n[0] = 0.0f;
-    f->d[0] = 1.0f;
-    f->n[1] = spot ? 1e-3f : 1.0f;
-    f->d[1] = spot ? -1.0f : 0.0f;
-    if (!spot) {
-        fan_clip(f, wn, wd);
-    } else if (wd > 0.0f) {
-        f->n[1] = wd;
-        f->d[1] = 1e-5f * wd - wn;
-    } else if (wd < 0.0f) {
-        f->n[0] = -wd;
-        f->d[0] = wn + 1e-5f * wd;
-        f->n[1] = 0.0f;
-    } else {
-        f->n[0] = 1e-3f;
-        f->empty = wn <= 0.0f;
-    }
-}
-
-/* Where the fan's ends fall on the map, in texels; 0 if it misses the map. */
-static int fan_ends(const tyni_lamp *lamp, const tyni_slice *slice, float reach, float u[2], float v[2])
-{
-    float un = tyni_vec_dot(lamp->u.v, slice->ex), vn = tyni_vec_dot(lamp->v.v, slice->ex);
-    float wn = tyni_vec_dot(lamp->w.v, slice->ex), size = (float)lamp->size;
-    int spot = lamp->kind == TYN_LIGHT_SPOT;
-    fan f;
-    fan_begin(&f, spot, wn, lamp->w.c);
-    fan_clip(&f, un, lamp->u.c);
-    fan_clip(&f, size * wn - un, size * lamp->w.c - lamp->u.c);
-    fan_clip(&f, vn, lamp->v.c);
-    fan_clip(&f, size * wn - vn, size * lamp->w.c - lamp->v.c);
-    if (!spot)
-        fan_clip(&f, -1.0f, reach);
-    if (f.empty)
+    float un = tyni_vec_dot(map->u.v, slice->ex), vn = tyni_vec_dot(map->v.v, slice->ex);
+    float wn = tyni_vec_dot(map->w.v, slice->ex), wd = map->w.c, size = (float)map->size;
+    fan_clip(f, wn, wd - 1e-6f * (tyni_absf(wn) + tyni_absf(wd)));
+    fan_clip(f, un, map->u.c);
+    fan_clip(f, size * wn - un, size * wd - map->u.c);
+    fan_clip(f, vn, map->v.c);
+    fan_clip(f, size * wn - vn, size * wd - map->v.c);
+    if (fan_empty(f))
         return 0;
     for (int32_t i = 0; i < 2; i++) {
-        float w = f.n[i] * wn + f.d[i] * lamp->w.c;
+        float w = f->n[i] * wn + f->d[i] * wd;
         if (!(w > 0.0f))
             return 0;
-        u[i] = tyni_clampf((f.n[i] * un + f.d[i] * lamp->u.c) / w, 0.0f, size);
-        v[i] = tyni_clampf((f.n[i] * vn + f.d[i] * lamp->v.c) / w, 0.0f, size);
+        u[i] = tyni_clampf((f->n[i] * un + f->d[i] * map->u.c) / w, 0.0f, size);
+        v[i] = tyni_clampf((f->n[i] * vn + f->d[i] * map->v.c) / w, 0.0f, size);
     }
     return 1;
 }
@@ -83,14 +61,14 @@ typedef struct ends {
     float g[2], z[2], c[2];
 } ends;
 
-static int ends_begin(ends *e, const tyni_row *row, const tyni_slice *slice, const tyni_lamp *lamp, const float p[2])
+static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice, const tyni_map *map, const float p[2])
 {
     /* (g w, z w, w) = M (x, y, 1) in the slice's plane */
     float m[3][3], x[3], y[3], det, sign;
     const tyni_form *form[3];
-    form[0] = &row->r;
-    form[1] = &lamp->z;
-    form[2] = &lamp->w;
+    form[0] = &piece->r;
+    form[1] = &map->z;
+    form[2] = &map->w;
     for (int32_t i = 0; i < 3; i++) {
         m[i][0] = tyni_vec_dot(form[i]->v, slice->ex);
         m[i][1] = tyni_vec_dot(form[i]->v, slice->ey);
@@ -131,10 +109,11 @@ typedef struct course {
     float sign;     /* way along the major axis */
     float base;     /* texel border that is step coordinate 0 */
     float minor, slope;
+    float from, to; /* step coordinates of its ends */
     int32_t steps;
 } course;
 
-static void course_begin(course *c, const float u[2], const float v[2], int32_t room)
+static void course_begin(course *c, const float u[2], const float v[2])
 {
     const float *major, *other;
     c->across = tyni_absf(u[1] - u[0]) >= tyni_absf(v[1] - v[0]);
@@ -144,7 +123,9 @@ static void course_begin(course *c, const float u[2], const float v[2], int32_t 
     c->base = c->sign > 0.0f ? (float)tyni_floori(major[0]) : (float)tyni_ceili(major[0]);
     c->slope = major[1] != major[0] ? (other[1] - other[0]) / (c->sign * (major[1] - major[0])) : 0.0f;
     c->minor = other[0] - c->slope * (c->sign * (major[0] - c->base));
-    c->steps = tyni_clampi(tyni_ceili(c->sign * (major[1] - c->base)), 1, room);
+    c->from = c->sign * (major[0] - c->base);
+    c->to = c->sign * (major[1] - c->base);
+    c->steps = tyni_maxi(tyni_ceili(c->to), 1);
 }
 
 static uint16_t column(const ends *e, float g, float z)
@@ -155,14 +136,14 @@ static uint16_t column(const ends *e, float g, float z)
     return threshold_of(e->g[0] * g + e->z[0] * z + e->c[0], e->g[1] * g + e->z[1] * z + e->c[1]);
 }
 
-static void fill(tyni_row *row, uint16_t *threshold, float *split, const tyni_lamp *lamp, const course *c, const ends *e)
+static void fill(tyni_piece *piece, uint16_t *threshold, float *split, const tyni_map *map, const course *c, const ends *e)
 {
-    int32_t size = lamp->size, first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
+    int32_t size = map->size, first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
     ptrdiff_t step = c->across ? 1 : size, pitch = c->across ? size : 1;
-    const float *texel = lamp->depth + step * first;
-    row->steps = tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
+    const float *texel = map->depth + step * first;
+    piece->steps = tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
     step = c->sign > 0.0f ? step : -step;
-    for (int32_t k = 0; k < row->steps; k++, texel += step) {
+    for (int32_t k = 0; k < piece->steps; k++, texel += step) {
         float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * (float)(k + 1), cut = 1.0f;
         int32_t a = tyni_clampi(tyni_floori(from), 0, size - 1), b = tyni_clampi(tyni_floori(to), 0, size - 1);
         if (a != b) /* |slope| <= 1: they are neighbours */
@@ -173,31 +154,68 @@ static void fill(tyni_row *row, uint16_t *threshold, float *split, const tyni_la
     }
 }
 
-void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, int32_t room, const tyni_slices *slices,
-                    const tyni_slice *slice, const tyni_lamp *lamp, float reach)
+/* Where thresholds are written. */
+typedef struct pen {
+    uint16_t *threshold;
+    float *split;
+    size_t room;
+} pen;
+
+static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_slice *slice, const float u[2], const float v[2],
+                      const float p[2])
 {
-    float u[2], v[2], pa, pb, p[2], length;
+    tyni_piece *piece = &row->pieces[row->count];
     const tyni_form *form;
     course c;
     ends e;
-    row->threshold = threshold;
-    row->split = split;
-    row->steps = 0;
-    if (!lamp->depth || !fan_ends(lamp, slice, reach, u, v))
+    course_begin(&c, u, v);
+    if (row->count >= TYNI_ROW_PIECES || (size_t)c.steps > w->room)
         return;
+    form = c.across ? &map->u : &map->v;
+    piece->r.v = tyni_vec_scale(tyni_vec_mad(form->v, -c.base, map->w.v), c.sign);
+    piece->r.c = c.sign * (form->c - c.base * map->w.c);
+    piece->w = map->w;
+    piece->from = c.from;
+    piece->to = c.to;
+    piece->threshold = w->threshold;
+    piece->split = w->split;
+    if (!ends_begin(&e, piece, slice, map, p))
+        return;
+    fill(piece, w->threshold, w->split, map, &c, &e);
+    row->count++;
+    w->threshold += 2 * piece->steps;
+    w->split += piece->steps;
+    w->room -= (size_t)piece->steps;
+}
+
+void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slices *slices,
+                    const tyni_slice *slice, const tyni_lamp *lamp, float reach)
+{
+    /* what no map has covered yet: a local light's columns as two quarters, since half a circle cannot be clipped by lines */
+    fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
+    int32_t fans = lamp->kind == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
+    float pa = tyni_slice_p(slices, slice->first), pb = tyni_slice_p(slices, slice->last), p[2], u[2], v[2];
+    pen w = {threshold, split, room};
+    row->count = 0;
     /* the line's lit end comes first: the one nearer to the light on the screen */
-    pa = tyni_slice_p(slices, slice->first);
-    pb = tyni_slice_p(slices, slice->last);
     p[0] = (pa < slice->epipole) != lamp->behind ? pb : pa;
     p[1] = (pa < slice->epipole) != lamp->behind ? pa : pb;
-    length = p[1] - p[0];
     row->p_start = p[0];
-    row->p_scale = length != 0.0f ? 65534.0f / length : 0.0f;
-    course_begin(&c, u, v, room);
-    form = c.across ? &lamp->u : &lamp->v;
-    row->r.v = tyni_vec_scale(tyni_vec_mad(form->v, -c.base, lamp->w.v), c.sign);
-    row->r.c = c.sign * (form->c - c.base * lamp->w.c);
-    row->w = lamp->w;
-    if (ends_begin(&e, row, slice, lamp, p))
-        fill(row, threshold, split, lamp, &c, &e);
+    row->p_scale = pa != pb ? 65534.0f / (p[1] - p[0]) : 0.0f;
+    if (fans == 1)
+        fan_clip(&open[0], -1.0f, reach);
+    for (int32_t i = 0; i < lamp->map_count; i++)
+        for (int32_t k = fans - 1; k >= 0; k--) {
+            fan f = open[k];
+            if (fan_empty(&f) || !fan_on_map(&f, &lamp->maps[i], slice, u, v))
+                continue;
+            add_piece(row, &w, &lamp->maps[i], slice, u, v, p);
+            if (fans < TYNI_ROW_PIECES + 2) { /* beyond it */
+                open[fans] = open[k];
+                open[fans].n[0] = f.n[1];
+                open[fans++].d[0] = f.d[1];
+            }
+            open[k].n[1] = f.n[0];
+            open[k].d[1] = f.d[0];
+        }
 }

@@ -17,25 +17,41 @@
 
 #include "base.h"
 
-typedef struct tyni_row {
+/* The columns of one shadow map, or of a part of it: where several maps meet (cascades, the faces of a cube) each column is
+ * looked up in the first map that covers it, and the row is a chain of pieces. */
+typedef struct tyni_piece {
     const uint16_t *threshold; /* of column i; lit for a ray at position q if q < threshold */
     const float *split;        /* of step k: 0 .. 1; 1: one texel, its two columns are alike */
-    int32_t steps;             /* 0: the slice misses the map */
+    int32_t steps;
+    float from, to; /* step coordinates where the piece begins and ends, inside the first and the last step */
     /* Step coordinate of a camera-relative point: r . p / w . p. Rises along every view ray. */
     tyni_form r, w;
+} tyni_piece;
+
+#define TYNI_ROW_PIECES 14
+
+typedef struct tyni_row {
+    int32_t count;          /* of pieces; 0: the slice misses all maps */
     float p_start, p_scale; /* position of a ray through p: (p - p_start) * p_scale */
+    tyni_piece pieces[TYNI_ROW_PIECES];
 } tyni_row;
 
 /* Where column i begins. */
-static inline float tyni_row_edge(const tyni_row *row, int32_t i)
+static inline float tyni_row_edge(const tyni_piece *piece, int32_t i)
 {
     float k = (float)(i >> 1);
-    return i & 1 ? k + row->split[i >> 1] : k;
+    return i & 1 ? k + piece->split[i >> 1] : k;
 }
 
-/* Builds the row into `threshold` and `split` (room for 2 * room and room). `reach`: no view ray gets farther from the axis
- * camera - light than this (directional lights; what lies beyond is not built). */
-void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, int32_t room, const tyni_slices *slices,
+/* Steps that a row can have, for the memory of split (once) and threshold (twice). */
+static inline size_t tyni_row_room(int32_t shadow_size, int32_t maps)
+{
+    return (size_t)maps * ((size_t)shadow_size + 4);
+}
+
+/* Builds the row into `threshold` and `split`. `reach`: no view ray gets farther from the axis camera - light than this
+ * (directional lights; what lies beyond is not built). */
+void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slices *slices,
                     const tyni_slice *slice, const tyni_lamp *lamp, float reach);
 
 /* 0 .. 65534 */

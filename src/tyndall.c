@@ -10,6 +10,7 @@
 
 /* A context takes as much room as TYN_MEMORY says. */
 typedef char context_fits[sizeof(struct tyn_context) <= TYN_CONTEXT_BYTES ? 1 : -1];
+typedef char row_fits[sizeof(tyni_row) <= TYN_ROW_BYTES ? 1 : -1];
 typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
 
 tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t width, int32_t height)

@@ -56,9 +56,8 @@ static tyni_form form(const float row[4], const tyni_view *view, float scale)
 
 static void shadow_map(tyni_lamp *lamp, const tyn_shadow *shadow, const tyni_view *view)
 {
+    tyni_map *map = &lamp->maps[lamp->map_count];
     float texels = (float)shadow->size, size = 0.0f, scale;
-    lamp->depth = NULL;
-    lamp->size = 0;
     if (!shadow->depth)
         return;
     /* A common factor of the matrix is free; make w's row of the order of 1. */
@@ -67,12 +66,13 @@ static void shadow_map(tyni_lamp *lamp, const tyn_shadow *shadow, const tyni_vie
     if (!(size > 0.0f))
         return;
     scale = 1.0f / size;
-    lamp->u = form(shadow->matrix, view, texels * scale);
-    lamp->v = form(shadow->matrix + 4, view, texels * scale);
-    lamp->z = form(shadow->matrix + 8, view, scale);
-    lamp->w = form(shadow->matrix + 12, view, scale);
-    lamp->depth = shadow->depth;
-    lamp->size = shadow->size;
+    map->u = form(shadow->matrix, view, texels * scale);
+    map->v = form(shadow->matrix + 4, view, texels * scale);
+    map->z = form(shadow->matrix + 8, view, scale);
+    map->w = form(shadow->matrix + 12, view, scale);
+    map->depth = shadow->depth;
+    map->size = shadow->size;
+    lamp->map_count++;
 }
 
 void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view)
@@ -95,6 +95,7 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
     }
     epipole(lamp, view);
     shadow_map(lamp, &light->shadow, view);
+    lamp->outside = !lamp->map_count || light->kind == TYN_LIGHT_DIRECTIONAL;
 }
 
 /* With T = t - (closest approach) the point is T v - h, h at right angles to v, and the double cone

@@ -39,6 +39,13 @@ typedef struct tyni_form {
     float c;
 } tyni_form;
 
+/* A shadow map as the camera sees it: u and v in texels. */
+typedef struct tyni_map {
+    const float *depth;
+    int32_t size;
+    tyni_form u, v, z, w;
+} tyni_map;
+
 /* A light as the camera sees it. */
 typedef struct tyni_lamp {
     tyn_light_kind kind;
@@ -54,10 +61,10 @@ typedef struct tyni_lamp {
      * away from it instead of falling. */
     float ex, ey, ew;
     int behind;
-    /* The shadow map: u and v in texels. depth NULL: no map, or one with a matrix that is singular as seen from here. */
-    const float *depth;
-    int32_t size;
-    tyni_form u, v, z, w;
+    /* Shadow maps: a point belongs to the first that covers it. `outside`: whether what none covers is lit. */
+    int outside;
+    int32_t map_count;
+    tyni_map maps[TYN_MAX_MAPS];
 } tyni_lamp;
 
 void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view);
