@@ -239,8 +239,11 @@ typedef struct tyn_config {
     int32_t slices;        /* epipolar slices, 8 .. 65536; 0: as TYN_PRESET_QUALITY */
     int32_t samples;       /* samples along a slice, at most: one per pixel column (row), each 2nd, 4th ... so that they
                               fit; 2 .. 65536; 0: all */
-    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: by size, 16 at 1920 */
+    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: by size, 8 at 480 and
+                              16 from 768 on */
     float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
+    float tolerance;       /* refinement on light: a stretch between rays is split while the middle of three misses the straight
+                              line by more than this part of the unshadowed light; > 0 .. 1 (never); 0: 0.01 */
     int32_t shadow_size;   /* largest shadow map of a frame, texels, 1 .. TYN_MAX_SHADOW; 0: 2048 */
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
     tyn_method method;
@@ -267,7 +270,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
      (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(shadow_size) + 4, 4) +                                       \
                           3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
-                          2 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
+                          3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 #define TYN_CONTEXT_BYTES 256
 #define TYN_STATS_BYTES 128
 #define TYN_ROW_BYTES 1088

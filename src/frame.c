@@ -52,6 +52,7 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->value[1] = tyni_arena_take(&arena, samples, sizeof *s->value[1]);
     s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
+    s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);
     s->stats = tyni_arena_take(&arena, 1, sizeof *s->stats);
 }
 
@@ -133,6 +134,20 @@ static void store_line(const pass *p, int32_t index, int32_t first, int32_t last
             entries[j] = tyni_entry_pack(s->value[0][j], s->value[1][j], inverse, s->depth[j] * far_inverse);
 }
 
+/* The rays of the set bits. */
+static void run_rays(const pass *p, const tyni_slice *slice, const uint32_t *rays, const tyni_scratch *s)
+{
+    for (int32_t j = tyni_sample_next(rays, slice->first, slice->last); j <= slice->last;
+         j = tyni_sample_next(rays, j + 1, slice->last)) {
+        float at = tyni_slice_p(&p->slices, j), length, value[2];
+        tyni_vec3 d = tyni_vec_mad(slice->a, at, slice->b);
+        length = tyni_vec_length(d);
+        ray_value(p, s->row, tyni_vec_scale(d, 1.0f / length), s->depth[j] * length, at, s->stats, value);
+        s->value[0][j] = value[0];
+        s->value[1][j] = value[1];
+    }
+}
+
 static void slice_job(void *argument, int32_t index, int32_t worker)
 {
     const pass *p = argument;
@@ -158,15 +173,9 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     }
     tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, 1), &p->slices, &slice, &p->lamp,
                    reach_of(p, &slice, s.depth));
-    for (int32_t j = tyni_sample_next(s.rays, slice.first, slice.last); j <= slice.last;
-         j = tyni_sample_next(s.rays, j + 1, slice.last)) {
-        float at = tyni_slice_p(&p->slices, j), length, value[2];
-        tyni_vec3 d = tyni_vec_mad(slice.a, at, slice.b);
-        length = tyni_vec_length(d);
-        ray_value(p, s.row, tyni_vec_scale(d, 1.0f / length), s.depth[j] * length, at, s.stats, value);
-        s.value[0][j] = value[0];
-        s.value[1][j] = value[1];
-    }
+    run_rays(p, &slice, s.rays, &s);
+    while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, slice.first, slice.last, config->tolerance))
+        run_rays(p, &slice, s.fresh, &s);
     tyni_sample_interpolate(s.value[0], s.rays, slice.first, slice.last);
     tyni_sample_interpolate(s.value[1], s.rays, slice.first, slice.last);
     store_line(p, index, slice.first, slice.last, &s);
@@ -428,6 +437,7 @@ tyn_status tyni_frame_config(tyn_config *c)
     c->samples = c->samples ? c->samples : preset.samples;
     c->initial_step = c->initial_step ? c->initial_step : preset.initial_step;
     c->break_threshold = c->break_threshold == 0.0f ? preset.break_threshold : c->break_threshold;
+    c->tolerance = c->tolerance == 0.0f ? preset.tolerance : c->tolerance;
     c->shadow_size = c->shadow_size ? c->shadow_size : preset.shadow_size;
     c->steps = c->steps ? c->steps : preset.steps;
     c->lights = c->lights ? c->lights : preset.lights;
@@ -436,7 +446,7 @@ tyn_status tyni_frame_config(tyn_config *c)
         (c->initial_step & (c->initial_step - 1)) || outside(c->shadow_size, 1, TYN_MAX_SHADOW) || outside(c->steps, 1, 4096) ||
         outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
         return TYN_E_CONFIG;
-    if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f))
+    if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
         return TYN_E_CONFIG;
     if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_STEPS)
         return TYN_E_CONFIG;
@@ -461,7 +471,7 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     tyni_arena_take(&one, tyni_row_room(g->shadow_size, 1), sizeof(float));
     for (int32_t i = 0; i < 3; i++)
         tyni_arena_take(&one, samples, sizeof(float));
-    for (int32_t i = 0; i < 2; i++)
+    for (int32_t i = 0; i < 3; i++)
         tyni_arena_take(&one, words, sizeof(uint32_t));
     tyni_arena_take(&one, 1, sizeof(tyn_stats));
     c->scratch_bytes = one.used;

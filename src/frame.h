@@ -11,11 +11,11 @@
 /* What one worker needs for one slice: small enough for its caches. */
 typedef struct tyni_scratch {
     tyni_row *row;
-    uint16_t *threshold;     /* 2 * tyni_row_room */
-    float *split;            /* tyni_row_room */
-    float *depth;            /* samples */
-    float *value[2];         /* samples: visibility, low and high */
-    uint32_t *breaks, *rays; /* bits */
+    uint16_t *threshold;             /* 2 * tyni_row_room */
+    float *split;                    /* tyni_row_room */
+    float *depth;                    /* samples */
+    float *value[2];                 /* samples: visibility, low and high */
+    uint32_t *breaks, *rays, *fresh; /* bits */
     tyn_stats *stats;
 } tyni_scratch;
 

@@ -80,6 +80,48 @@ int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last)
     return tyni_mini(w * 32 + tyni_ctz32(bits), last + 1);
 }
 
+static int bent(const float *value, int32_t a, int32_t b, int32_t c, float tolerance)
+{
+    float between = value[a] + (value[c] - value[a]) * ((float)(b - a) / (float)(c - a));
+    return tyni_absf(value[b] - between) > tolerance;
+}
+
+static int32_t halve(uint32_t *fresh, int32_t a, int32_t b)
+{
+    if (b - a < 2)
+        return 0;
+    a += (b - a) / 2;
+    if (tyni_sample_bit(fresh, a))
+        return 0;
+    set(fresh, a);
+    return 1;
+}
+
+int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, float *const value[2], int32_t first,
+                           int32_t last, float tolerance)
+{
+    int32_t a = first, before = -1, words = tyni_sample_words(last + 1), count = 0;
+    memset(fresh, 0, sizeof *fresh * (size_t)words);
+    while (a < last) {
+        int32_t b = tyni_sample_next(rays, a + 1, last);
+        int broken = b == a + 1 && tyni_sample_bit(breaks, a);
+        int alone = before < 0 && (b == last || tyni_sample_bit(breaks, b));
+        if (broken) {
+            before = -1; /* nothing is interpolated across it, so nothing is compared */
+        } else {
+            if (alone && b - a > 4)
+                count += halve(fresh, a, b);
+            if (before >= 0 && (bent(value[0], before, a, b, tolerance) || bent(value[1], before, a, b, tolerance)))
+                count += halve(fresh, before, a) + halve(fresh, a, b);
+            before = a;
+        }
+        a = b;
+    }
+    for (int32_t w = 0; w < words; w++)
+        rays[w] |= fresh[w];
+    return count;
+}
+
 void tyni_sample_interpolate(float *value, const uint32_t *rays, int32_t first, int32_t last)
 {
     int32_t a = first;

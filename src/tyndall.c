@@ -17,7 +17,11 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
 {
     static const struct {
         int32_t divisor, most, samples, rays, shadow;
-    } table[] = {{8, 256, 2, 16, 256}, {4, 512, 2, 64, 1024}, {1, 1024, 1, 96, 2048}, {1, 4096, 1, 384, 4096}};
+        float tolerance;
+    } table[] = {{8, 256, 2, 16, 256, 0.04f},
+                 {4, 512, 2, 32, 1024, 0.02f},
+                 {1, 1024, 1, 48, 2048, 0.01f},
+                 {1, 4096, 1, 192, 4096, 0.003f}};
     int32_t longer = tyni_maxi(width, height);
     if (!config)
         return TYN_E_NULL;
@@ -33,6 +37,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     while (config->initial_step < 16 && 2 * config->initial_step * table[preset].rays <= config->samples)
         config->initial_step *= 2;
     config->break_threshold = 0.06f;
+    config->tolerance = table[preset].tolerance;
     config->shadow_size = table[preset].shadow;
     config->steps = 150;
     config->lights = 1;
