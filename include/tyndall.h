@@ -239,8 +239,8 @@ typedef struct tyn_config {
     int32_t slices;        /* epipolar slices, 8 .. 65536; 0: as TYN_PRESET_QUALITY */
     int32_t samples;       /* samples along a slice, at most: one per pixel column (row), each 2nd, 4th ... so that they
                               fit; 2 .. 65536; 0: all */
-    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: by size, 8 at 480 and
-                              16 from 768 on */
+    int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: by size, 4 at 480 and
+                              16 from 1536 on */
     float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
     float tolerance;       /* refinement on light: a stretch between rays is split while the middle of three misses the straight
                               line by more than this part of the unshadowed light; > 0 .. 1 (never); 0: 0.01 */

@@ -20,7 +20,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
         float tolerance;
     } table[] = {{8, 256, 2, 16, 256, 0.04f},
                  {4, 512, 2, 32, 1024, 0.02f},
-                 {1, 1024, 1, 48, 2048, 0.01f},
+                 {1, 1024, 1, 96, 2048, 0.01f},
                  {1, 4096, 1, 192, 4096, 0.003f}};
     int32_t longer = tyni_maxi(width, height);
     if (!config)

@@ -16,9 +16,11 @@ typedef struct edge {
 typedef struct brush {
     const tyni_raster_pass *pass;
     const tyni_raster_piece *piece;
-    const tyni_raster_cutout *cutout; /* NULL: solid */
     int64_t pixels;
-    int32_t probe; /* only asks whether anything is covered */
+    int32_t probe;  /* only asks whether anything is covered */
+    int32_t masked; /* the piece has a mask; */
+    int32_t ready;  /* its cutout is set up, which waits for the first pixel that passes the depth test */
+    tyni_raster_cutout cutout;
 } brush;
 
 static int32_t first_row(int32_t y)
@@ -131,8 +133,16 @@ static int32_t span_seen(const span *s, float nearest, const tyni_raster_piece *
     return passed;
 }
 
+static int solid(brush *b, int32_t x, int32_t y)
+{
+    if (!b->ready)
+        tyni_raster_set_cutout(b->pass, b->piece, &b->cutout);
+    b->ready = 1;
+    return tyni_raster_solid(&b->cutout, x, y);
+}
+
 /* With a mask, asked last: it costs most. */
-static int32_t span_cutout(const span *s, const brush *b)
+static int32_t span_cutout(const span *s, brush *b)
 {
     const tyni_raster_pass *pass = b->pass;
     const uint32_t seen[2] = {b->piece->mesh, b->piece->triangle};
@@ -141,12 +151,12 @@ static int32_t span_cutout(const span *s, const brush *b)
         const float value = value_at(s, x);
         if (pass->kind == TYNI_RASTER_SHADOW) {
             const float z = tyni_minf(value, 1.0f);
-            if (!(z > s->depth[x]) || !tyni_raster_solid(b->cutout, x, s->y))
+            if (!(z > s->depth[x]) || !solid(b, x, s->y))
                 continue;
             s->depth[x] = z;
         } else {
             const float z = 1.0f / value;
-            if (!(z < s->depth[x] && z >= pass->nearest) || !tyni_raster_solid(b->cutout, x, s->y))
+            if (!(z < s->depth[x] && z >= pass->nearest) || !solid(b, x, s->y))
                 continue;
             s->depth[x] = z;
             if (s->colour)
@@ -172,7 +182,7 @@ static void fill_span(brush *b, int32_t y, int32_t from, int32_t to)
     s.from = from;
     s.to = to;
     s.x0 = piece->plane.x0;
-    if (b->cutout)
+    if (b->masked)
         b->pixels += span_cutout(&s, b);
     else if (pass->kind == TYNI_RASTER_SHADOW)
         b->pixels += span_shadow(&s);
@@ -270,9 +280,11 @@ void tyni_raster_fill(void *argument, int32_t band, int32_t worker)
     const tyn_raster *raster = pass->raster;
     const int32_t first = band * TYNI_RASTER_BAND, end = tyni_mini(first + TYNI_RASTER_BAND, pass->view.height);
     tyni_raster_tally *tally = &raster->tallies[worker];
-    tyni_raster_cutout cutout;
-    brush b = {pass, NULL, NULL, 0, 0};
     int64_t drawn = 0;
+    brush b;
+    b.pass = pass;
+    b.pixels = 0;
+    b.probe = 0;
     for (int32_t c = 0; c < pass->chunks; c++) {
         const tyni_raster_chunk *chunk = &raster->chunks[c];
         if (chunk->first >= end || chunk->last < first)
@@ -282,11 +294,8 @@ void tyni_raster_fill(void *argument, int32_t band, int32_t worker)
             if (rows.first >= end || rows.last < first || rows.first > rows.last)
                 continue;
             b.piece = &raster->pieces[i];
-            b.cutout = NULL;
-            if (tyni_raster_masked(&pass->meshes[b.piece->mesh])) {
-                tyni_raster_set_cutout(pass, b.piece, &cutout);
-                b.cutout = &cutout;
-            }
+            b.masked = tyni_raster_masked(&pass->meshes[b.piece->mesh]);
+            b.ready = 0;
             drawn += fill_piece(&b, first, end, rows.first);
         }
     }

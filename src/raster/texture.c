@@ -11,23 +11,6 @@ static float fraction(float x)
     return tyni_absf(x) < 8388608.0f ? x - (float)tyni_floori(x) : 0.0f;
 }
 
-static void load(const tyn_image *texture, const uint8_t *row, int32_t x, float rgb[3])
-{
-    if (texture->format == TYN_RGB8_LINEAR) {
-        const uint8_t *p = row + 3 * (ptrdiff_t)x;
-        for (int32_t c = 0; c < 3; c++)
-            rgb[c] = (float)p[c];
-    } else if (texture->format == TYN_RGB16_LINEAR) {
-        const uint16_t *p = (const uint16_t *)(const void *)row + 3 * (ptrdiff_t)x;
-        for (int32_t c = 0; c < 3; c++)
-            rgb[c] = (float)p[c];
-    } else {
-        const float *p = (const float *)(const void *)row + 3 * (ptrdiff_t)x;
-        for (int32_t c = 0; c < 3; c++)
-            rgb[c] = tyni_clampf(p[c], 0.0f, 1e30f);
-    }
-}
-
 /* Texel i of n is centred at (i + 0.5) / n. Gives the texel at or before the point, its successor, and the way between. */
 static float neighbours(float at, int32_t n, int32_t *first, int32_t *second)
 {
@@ -38,24 +21,65 @@ static float neighbours(float at, int32_t n, int32_t *first, int32_t *second)
     return x - (float)i;
 }
 
+/* Two rows, two columns in each (counted in components), and the way between them. */
+typedef struct patch {
+    const void *upper, *lower;
+    ptrdiff_t left, right;
+    float s, t;
+} patch;
+
+static float blend(const patch *p, float a, float b, float c, float d)
+{
+    const float top = a + p->s * (b - a), bottom = c + p->s * (d - c);
+    return top + p->t * (bottom - top);
+}
+
+static void blend_bytes(const patch *p, float rgb[3])
+{
+    const uint8_t *a = (const uint8_t *)p->upper + p->left, *b = (const uint8_t *)p->upper + p->right;
+    const uint8_t *c = (const uint8_t *)p->lower + p->left, *d = (const uint8_t *)p->lower + p->right;
+    for (int32_t i = 0; i < 3; i++)
+        rgb[i] = blend(p, (float)a[i], (float)b[i], (float)c[i], (float)d[i]) * (1.0f / 255.0f);
+}
+
+static void blend_words(const patch *p, float rgb[3])
+{
+    const uint16_t *a = (const uint16_t *)p->upper + p->left, *b = (const uint16_t *)p->upper + p->right;
+    const uint16_t *c = (const uint16_t *)p->lower + p->left, *d = (const uint16_t *)p->lower + p->right;
+    for (int32_t i = 0; i < 3; i++)
+        rgb[i] = blend(p, (float)a[i], (float)b[i], (float)c[i], (float)d[i]) * (1.0f / 65535.0f);
+}
+
+/* What a file brought along may be anything: negative, infinite, no number. */
+static float tame(float x)
+{
+    return tyni_clampf(x, 0.0f, 1e30f);
+}
+
+static void blend_floats(const patch *p, float rgb[3])
+{
+    const float *a = (const float *)p->upper + p->left, *b = (const float *)p->upper + p->right;
+    const float *c = (const float *)p->lower + p->left, *d = (const float *)p->lower + p->right;
+    for (int32_t i = 0; i < 3; i++)
+        rgb[i] = blend(p, tame(a[i]), tame(b[i]), tame(c[i]), tame(d[i]));
+}
+
 void tyni_raster_texel(const tyn_image *texture, float u, float v, float rgb[3])
 {
-    const float unit = texture->format == TYN_RGB8_LINEAR    ? 1.0f / 255.0f
-                       : texture->format == TYN_RGB16_LINEAR ? 1.0f / 65535.0f
-                                                             : 1.0f;
-    const float whole_v = fraction(v);
     int32_t x0, x1, y0, y1;
-    const float s = neighbours(u, texture->width, &x0, &x1), t = neighbours(1.0f - whole_v, texture->height, &y0, &y1);
-    const uint8_t *upper = tyni_image_row(texture, y0), *lower = tyni_image_row(texture, y1);
-    float a[3], b[3], c[3], d[3];
-    load(texture, upper, x0, a);
-    load(texture, upper, x1, b);
-    load(texture, lower, x0, c);
-    load(texture, lower, x1, d);
-    for (int32_t i = 0; i < 3; i++) {
-        const float top = a[i] + s * (b[i] - a[i]), bottom = c[i] + s * (d[i] - c[i]);
-        rgb[i] = (top + t * (bottom - top)) * unit;
-    }
+    patch p;
+    p.s = neighbours(u, texture->width, &x0, &x1);
+    p.t = neighbours(1.0f - fraction(v), texture->height, &y0, &y1);
+    p.upper = tyni_image_row(texture, y0);
+    p.lower = tyni_image_row(texture, y1);
+    p.left = 3 * (ptrdiff_t)x0;
+    p.right = 3 * (ptrdiff_t)x1;
+    if (texture->format == TYN_RGB8_LINEAR)
+        blend_bytes(&p, rgb);
+    else if (texture->format == TYN_RGB16_LINEAR)
+        blend_words(&p, rgb);
+    else
+        blend_floats(&p, rgb);
 }
 
 void tyni_raster_set_cutout(const tyni_raster_pass *pass, const tyni_raster_piece *piece, tyni_raster_cutout *cutout)
