@@ -111,7 +111,7 @@ check_clone() {
         mkdir -p "$clone"
         tar -cf - --exclude=./build . | (cd "$clone" && tar -xf -)
     fi
-    commands=$(sed -n 's/^    \(make [a-z]*\)  .*/\1/p' README.md)
+    commands=$(sed -n -e 's/^[ $]*\(make run\)\( .*\)*$/\1/p' -e 's/^[ $]*\(make test\)\( .*\)*$/\1/p' README.md | sort -u)
     empty 'the README has its two commands' "$([ "$(echo "$commands" | wc -l)" -eq 2 ] || echo "$commands")"
     while read -r command; do
         start=$(date +%s)
