@@ -156,7 +156,7 @@ tyn_status tyn_medium_air(tyn_medium media[2], float scale);
  * left and from the top row; z = Z / W is 1 nearest to the light and falls with the distance from it, 0 at the far end.
  * A texel holds the largest z that its centre sees; 0: nothing, all lit; values above 1 count as 1.
  * z must be a projective depth (linear on planes in u and v): linear distance for a parallel projection, near / distance for a
- * perspective one. Outside the map all is lit (directional) or dark (spot). */
+ * perspective one. */
 typedef struct tyn_shadow {
     const float *depth; /* size * size floats, rows without a gap; NULL: no shadows from this light */
     int32_t size;       /* texels, 1 .. TYN_MAX_SHADOW; 0 with depth == NULL */
@@ -166,15 +166,27 @@ typedef struct tyn_shadow {
 #define TYN_MAX_SHADOW 16384
 #define TYN_MAX_MAPS 8
 
-typedef enum tyn_light_kind { TYN_LIGHT_DIRECTIONAL = 0, TYN_LIGHT_SPOT = 1 } tyn_light_kind;
+typedef enum tyn_light_kind { TYN_LIGHT_DIRECTIONAL = 0, TYN_LIGHT_SPOT = 1, TYN_LIGHT_POINT = 2 } tyn_light_kind;
+
+/* What is not covered by any of a light's shadow maps. A light without maps is lit everywhere. */
+typedef enum tyn_outside {
+    TYN_OUTSIDE_DEFAULT = 0, /* lit for a directional light, dark for the others */
+    TYN_OUTSIDE_LIT = 1,
+    TYN_OUTSIDE_DARK = 2
+} tyn_outside;
 
 typedef struct tyn_light {
     tyn_light_kind kind;
-    float position[3];  /* spot only */
-    float direction[3]; /* the way the light travels (a spot's axis), of length 1 within 1e-3 */
-    float colour[3];    /* directional: irradiance on a plane facing the light; spot: radiant intensity. RGB, >= 0 */
+    float position[3];  /* spot and point only */
+    float direction[3]; /* the way the light travels (a spot's axis), of length 1 within 1e-3; ignored for a point */
+    float colour[3];    /* directional: irradiance on a plane facing the light; spot, point: radiant intensity. RGB, >= 0 */
     float angle;        /* spot: full angle of the cone, 0 < angle < 170 degrees (2.96706); its edge is hard */
     tyn_shadow shadow;
+    /* Further maps, more_count of them, 0 .. TYN_MAX_MAPS - 1; NULL with 0. Each place is looked up in the first map that
+     * covers it, `shadow` before these: cascades are given finest first, the faces of a point light's cube in any order. */
+    const tyn_shadow *more;
+    int32_t more_count;
+    tyn_outside outside;
 } tyn_light;
 
 /* Sets light->shadow.matrix (nothing else) for rendering or reading a map of this light: for a spot the cone's square frustum,
@@ -182,6 +194,11 @@ typedef struct tyn_light {
  * in the box bounds_min .. bounds_max can shadow. The box holds all geometry; both NULL: no box, all that the camera can see.
  * TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MESH (bounds not finite or min > max). */
 tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const float bounds_min[3], const float bounds_max[3]);
+
+/* Sets the matrices of the six faces of a cube of maps around a point light: faces[0] is its `shadow`, faces[1] .. [5] its
+ * `more`. `reach`: distance beyond which nothing matters, > 0. Sizes, if set, give the faces a margin of two texels.
+ * TYN_E_NULL, TYN_E_LIGHT. */
+tyn_status tyn_shadow_fit_cube(tyn_shadow faces[6], const float position[3], float reach);
 
 struct tyn_mesh;
 
@@ -248,6 +265,7 @@ typedef struct tyn_config {
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
     tyn_method method;
     tyn_rays rays;
+    int32_t maps;    /* most shadow maps of one light, 1 .. TYN_MAX_MAPS; 0: 1 */
     int32_t lights;  /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
     int32_t workers; /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
 } tyn_config;
@@ -266,9 +284,11 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
  *     static union { uint64_t align[8]; uint8_t bytes[TYN_MEMORY(320, 240, 64, 160, 256, 1, 1)]; } block;
  * (and see to its alignment: TYN_ALIGNMENT). All arguments as in tyn_config, with no zeros. */
 #define TYN_MEMORY(width, height, slices, samples, shadow_size, lights, workers)                                               \
+    TYN_MEMORY_MAPS(width, height, slices, samples, shadow_size, lights, workers, 1)
+#define TYN_MEMORY_MAPS(width, height, slices, samples, shadow_size, lights, workers, maps)                                    \
     (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) + TYNI_BYTES(slices, 8) +        \
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
-     (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(shadow_size) + 4, 4) +                                       \
+     (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                    \
                           3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 #define TYN_CONTEXT_BYTES 256

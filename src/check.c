@@ -85,29 +85,46 @@ tyn_status tyni_check_camera(const tyn_camera *c)
     return TYN_OK;
 }
 
-tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t shadow_limit)
+static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)
 {
+    if (!s->depth)
+        return TYN_OK;
+    if (s->size < 1 || s->size > TYN_MAX_SHADOW || !tyni_check_finite(s->matrix, 16) || (uintptr_t)s->depth % sizeof(float))
+        return TYN_E_LIGHT;
+    return s->size > limit ? TYN_E_LIMIT : TYN_OK;
+}
+
+static tyn_status check_light(const tyn_light *l, int32_t shadow_limit, int32_t map_limit)
+{
+    tyn_status status;
+    if ((uint32_t)l->kind > (uint32_t)TYN_LIGHT_POINT || (uint32_t)l->outside > (uint32_t)TYN_OUTSIDE_DARK)
+        return TYN_E_LIGHT;
+    if (!tyni_check_colour(l->colour) || (l->kind != TYN_LIGHT_POINT && !unit(l->direction)))
+        return TYN_E_LIGHT;
+    if (l->kind != TYN_LIGHT_DIRECTIONAL && !tyni_check_finite(l->position, 3))
+        return TYN_E_LIGHT;
+    if (l->kind == TYN_LIGHT_SPOT && (!(l->angle > 0.0f) || !(l->angle < 2.967060f)))
+        return TYN_E_LIGHT;
+    if (l->more_count < 0 || l->more_count >= map_limit)
+        return TYN_E_LIMIT;
+    if (l->more_count > 0 && !l->more)
+        return TYN_E_NULL;
+    status = check_shadow(&l->shadow, shadow_limit);
+    for (int32_t i = 0; i < l->more_count && status == TYN_OK; i++)
+        status = check_shadow(&l->more[i], shadow_limit);
+    return status;
+}
+
+tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t shadow_limit, int32_t map_limit)
+{
+    tyn_status status = TYN_OK;
     if (count < 0)
         return TYN_E_LIMIT;
     if (count > 0 && !lights)
         return TYN_E_NULL;
-    for (int32_t i = 0; i < count; i++) {
-        const tyn_light *l = &lights[i];
-        if (l->kind != TYN_LIGHT_DIRECTIONAL && l->kind != TYN_LIGHT_SPOT)
-            return TYN_E_LIGHT;
-        if (!unit(l->direction) || !tyni_check_colour(l->colour))
-            return TYN_E_LIGHT;
-        if (l->kind == TYN_LIGHT_SPOT && (!tyni_check_finite(l->position, 3) || !(l->angle > 0.0f) || !(l->angle < 2.967060f)))
-            return TYN_E_LIGHT;
-        if (!l->shadow.depth)
-            continue;
-        if (l->shadow.size < 1 || l->shadow.size > TYN_MAX_SHADOW || !tyni_check_finite(l->shadow.matrix, 16) ||
-            (uintptr_t)l->shadow.depth % sizeof(float))
-            return TYN_E_LIGHT;
-        if (l->shadow.size > shadow_limit)
-            return TYN_E_LIMIT;
-    }
-    return TYN_OK;
+    for (int32_t i = 0; i < count && status == TYN_OK; i++)
+        status = check_light(&lights[i], shadow_limit, map_limit);
+    return status;
 }
 
 tyn_status tyni_check_media(const tyn_medium *media, int32_t count)

@@ -16,7 +16,8 @@ ptrdiff_t tyni_image_stride(const tyn_image *image);
 void *tyni_image_row(const tyn_image *image, int32_t y);
 
 tyn_status tyni_check_camera(const tyn_camera *camera);
-tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t shadow_limit);
+/* Limits: texels of a map, maps of a light. */
+tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t shadow_limit, int32_t map_limit);
 tyn_status tyni_check_media(const tyn_medium *media, int32_t count);
 tyn_status tyni_check_display(const tyn_display *display);
 

@@ -348,18 +348,33 @@ static float farthest(const tyn_light *light, const tyn_camera *camera, const ty
     return reach > 0.0f ? reach : camera->far_depth;
 }
 
+/* Looks along d from a point, over a square of tangents -half .. half along a and b. w is the depth from the light, u = 1/2 +
+ * (x / w) / (2 half) and v alike, z = near / w with a near end too close to be met. */
+static void frustum(float matrix[16], const float position[3], tyni_vec3 d, tyni_vec3 a, tyni_vec3 b, float half,
+                    int32_t texels, float reach)
+{
+    tyni_vec3 from = tyni_vec_load(position);
+    half *= 1.0f + 2.0f * MARGIN / (float)tyni_maxi(texels, 64);
+    row(matrix, tyni_vec_mad(tyni_vec_scale(d, 0.5f), 0.5f / half, a), 0.0f, 1.0f, from);
+    row(matrix + 4, tyni_vec_mad(tyni_vec_scale(d, 0.5f), 0.5f / half, b), 0.0f, 1.0f, from);
+    matrix[8] = matrix[9] = matrix[10] = 0.0f;
+    matrix[11] = tyni_maxf(reach * 1e-3f, 1e-6f);
+    row(matrix + 12, d, 0.0f, 1.0f, from);
+}
+
 void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *camera, const tyni_fit_casters *casters)
 {
-    float sine, cosine, half;
+    float sine, cosine;
     fit f;
     fit_begin(&f, light, camera, NULL);
     tyni_num_sincos(0.5f * light->angle, &sine, &cosine);
-    half = sine / cosine * (1.0f + 2.0f * MARGIN / (float)tyni_maxi(light->shadow.size, 64));
-    /* w is the depth from the light, u = 1/2 + (x / w) / (2 half) and v alike, z = near / w with a near end too close to be met
-     */
-    row(matrix, tyni_vec_mad(tyni_vec_scale(f.d, 0.5f), 0.5f / half, f.a), 0.0f, 1.0f, tyni_vec_load(light->position));
-    row(matrix + 4, tyni_vec_mad(tyni_vec_scale(f.d, 0.5f), 0.5f / half, f.b), 0.0f, 1.0f, tyni_vec_load(light->position));
-    matrix[8] = matrix[9] = matrix[10] = 0.0f;
-    matrix[11] = tyni_maxf(farthest(light, camera, casters) * 1e-3f, 1e-6f);
-    row(matrix + 12, f.d, 0.0f, 1.0f, tyni_vec_load(light->position));
+    frustum(matrix, light->position, f.d, f.a, f.b, sine / cosine, light->shadow.size, farthest(light, camera, casters));
+}
+
+void tyni_fit_face(float matrix[16], const float position[3], int32_t face, float reach, int32_t texels)
+{
+    float axis[3][3] = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+    for (int32_t i = 0; i < 3; i++) /* d, a, b: the face's axis and the two after it */
+        axis[i][(face / 2 + i) % 3] = i == 0 && face % 2 ? -1.0f : 1.0f;
+    frustum(matrix, position, tyni_vec_load(axis[0]), tyni_vec_load(axis[1]), tyni_vec_load(axis[2]), 1.0f, texels, reach);
 }

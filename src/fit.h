@@ -16,4 +16,6 @@ void tyni_fit_directional(float matrix[16], const tyn_light *light, const tyn_ca
                           const tyni_fit_casters *casters);
 void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *camera, const tyni_fit_casters *casters);
 
+void tyni_fit_face(float matrix[16], const float position[3], int32_t face, float reach, int32_t texels);
+
 #endif

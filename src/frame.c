@@ -42,7 +42,7 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
     size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
-    size_t row = tyni_row_room(c->config.shadow_size, 1);
+    size_t row = tyni_row_room(c->config.shadow_size, c->config.maps);
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
     s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
     s->threshold = tyni_arena_take(&arena, 2 * row, sizeof *s->threshold);
@@ -171,7 +171,7 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
         tyni_debug_mark(entries, s.rays, s.breaks, slice.first, slice.last);
         return;
     }
-    tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, 1), &p->slices, &slice, &p->lamp,
+    tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, config->maps), &p->slices, &slice, &p->lamp,
                    reach_of(p, &slice, s.depth));
     run_rays(p, &slice, s.rays, &s);
     while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, slice.first, slice.last, config->tolerance))
@@ -440,11 +440,12 @@ tyn_status tyni_frame_config(tyn_config *c)
     c->tolerance = c->tolerance == 0.0f ? preset.tolerance : c->tolerance;
     c->shadow_size = c->shadow_size ? c->shadow_size : preset.shadow_size;
     c->steps = c->steps ? c->steps : preset.steps;
+    c->maps = c->maps ? c->maps : preset.maps;
     c->lights = c->lights ? c->lights : preset.lights;
     c->workers = c->workers ? c->workers : preset.workers;
     if (outside(c->slices, 8, 65536) || outside(c->samples, 2, 65536) || outside(c->initial_step, 1, 64) ||
         (c->initial_step & (c->initial_step - 1)) || outside(c->shadow_size, 1, TYN_MAX_SHADOW) || outside(c->steps, 1, 4096) ||
-        outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
+        outside(c->maps, 1, TYN_MAX_MAPS) || outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
         return TYN_E_CONFIG;
     if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
         return TYN_E_CONFIG;
@@ -467,8 +468,8 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     c->counts = tyni_arena_take(arena, (size_t)g->workers, sizeof *c->counts);
     /* the parts of a scratch, in the order of scratch_of */
     tyni_arena_take(&one, 1, TYN_ROW_BYTES);
-    tyni_arena_take(&one, 2 * tyni_row_room(g->shadow_size, 1), sizeof(uint16_t));
-    tyni_arena_take(&one, tyni_row_room(g->shadow_size, 1), sizeof(float));
+    tyni_arena_take(&one, 2 * tyni_row_room(g->shadow_size, g->maps), sizeof(uint16_t));
+    tyni_arena_take(&one, tyni_row_room(g->shadow_size, g->maps), sizeof(float));
     for (int32_t i = 0; i < 3; i++)
         tyni_arena_take(&one, samples, sizeof(float));
     for (int32_t i = 0; i < 3; i++)

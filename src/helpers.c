@@ -74,8 +74,10 @@ static tyn_status check_fit(const tyn_light *light, const tyn_camera *camera)
     if (tyni_check_camera(camera) != TYN_OK)
         return TYN_E_CAMERA;
     bare = *light;
+    if (light->kind == TYN_LIGHT_POINT)
+        return TYN_E_LIGHT;   /* tyn_shadow_fit_cube */
     bare.shadow.depth = NULL; /* its matrix is what is asked for, whatever it holds now */
-    return tyni_check_lights(&bare, 1, TYN_MAX_SHADOW);
+    return tyni_check_lights(&bare, 1, TYN_MAX_SHADOW, TYN_MAX_MAPS);
 }
 
 static void fit(tyn_light *light, const tyn_camera *camera, const tyn_image *depth, const tyni_fit_casters *casters)
@@ -138,5 +140,16 @@ tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, cons
     casters.meshes = meshes;
     casters.mesh_count = mesh_count;
     fit(light, camera, depth, &casters);
+    return TYN_OK;
+}
+
+tyn_status tyn_shadow_fit_cube(tyn_shadow faces[6], const float position[3], float reach)
+{
+    if (!faces || !position)
+        return TYN_E_NULL;
+    if (!tyni_check_finite(position, 3) || !tyni_finite(reach) || !(reach > 0.0f))
+        return TYN_E_LIGHT;
+    for (int32_t i = 0; i < 6; i++)
+        tyni_fit_face(faces[i].matrix, position, i, reach, faces[i].size);
     return TYN_OK;
 }

@@ -40,6 +40,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->tolerance = table[preset].tolerance;
     config->shadow_size = table[preset].shadow;
     config->steps = 150;
+    config->maps = 1;
     config->lights = 1;
     config->workers = 1;
     return TYN_OK;
@@ -123,7 +124,7 @@ static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
     if (status == TYN_OK && f->light_count > c->lights)
         status = TYN_E_LIMIT;
     if (status == TYN_OK)
-        status = tyni_check_lights(f->lights, f->light_count, c->shadow_size);
+        status = tyni_check_lights(f->lights, f->light_count, c->shadow_size, c->maps);
     if (status == TYN_OK)
         status = tyni_check_media(f->media, f->medium_count);
     if (status == TYN_OK)

@@ -89,13 +89,17 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
         lamp->position = tyni_vec_sub(tyni_vec_load(light->position), view->position);
         lamp->distance = tyni_vec_length(lamp->position);
         lamp->to_light = tyni_vec_normalise(lamp->position);
-        tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cos_half);
+        if (light->kind == TYN_LIGHT_SPOT)
+            tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cos_half);
         lamp->radius = tyni_maxf(1e-2f * view->near_depth, 1e-4f * lamp->distance);
         lamp->at_camera = lamp->distance <= 1e-4f * view->near_depth;
     }
     epipole(lamp, view);
     shadow_map(lamp, &light->shadow, view);
-    lamp->outside = !lamp->map_count || light->kind == TYN_LIGHT_DIRECTIONAL;
+    for (int32_t i = 0; i < light->more_count; i++)
+        shadow_map(lamp, &light->more[i], view);
+    lamp->outside = !lamp->map_count || light->outside == TYN_OUTSIDE_LIT ||
+                    (light->outside == TYN_OUTSIDE_DEFAULT && light->kind == TYN_LIGHT_DIRECTIONAL);
 }
 
 /* With T = t - (closest approach) the point is T v - h, h at right angles to v, and the double cone
@@ -105,7 +109,7 @@ int tyni_view_clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1
 {
     float tc, va, ha, k2, a, c, disc, root, b, r1, r2, swap;
     tyni_vec3 h;
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
+    if (lamp->kind != TYN_LIGHT_SPOT)
         return *t0 < *t1;
     tc = tyni_vec_dot(v, lamp->position);
     h = tyni_vec_mad(lamp->position, -tc, v);

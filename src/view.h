@@ -51,12 +51,12 @@ typedef struct tyni_lamp {
     tyn_light_kind kind;
     float colour[3];
     tyni_vec3 to_light; /* unit vector from the camera */
-    float distance;     /* spot: to the light */
-    tyni_vec3 position; /* spot: relative to the camera */
-    float radius;       /* spot: 1 / r^2 grows no further inside it; a hundredth of the near depth, or 1e-4 of the distance */
-    tyni_vec3 axis;     /* the way the light travels, of length 1 */
-    float cos_half;     /* spot: of half the cone's angle */
-    int at_camera;      /* the light is where the camera is: there is no epipole */
+    float distance;     /* spot, point: to the light */
+    tyni_vec3 position; /* spot, point: relative to the camera */
+    float radius; /* spot, point: 1 / r^2 grows no further inside it; a hundredth of the near depth, or 1e-4 of the distance */
+    tyni_vec3 axis; /* the way the light travels, of length 1 */
+    float cos_half; /* spot: of half the cone's angle */
+    int at_camera;  /* the light is where the camera is: there is no epipole */
     /* Epipole in homogeneous pixel coordinates with w >= 0. `behind`: it is the antipode's image, and slopes grow along a line
      * away from it instead of falling. */
     float ex, ey, ew;

@@ -324,7 +324,7 @@ static void test_wild(void)
         float p[9 * 100];
         int finite = 1;
         const tyn_mesh mesh = easel_mesh(p, 100);
-        tyn_light sun = {TYN_LIGHT_DIRECTIONAL, {0, 0, 0}, {0, 0, -1}, {1, 1, 1}, 0, {NULL, 0, {0}}};
+        tyn_light sun = {.direction = {0, 0, -1}, .colour = {1, 1, 1}};
         e.surface.lights = &sun;
         e.surface.light_count = 1;
         for (int round = 0; round < 10; round++) {
@@ -357,7 +357,7 @@ static void test_order(void)
     static float p[9 * N], map[SIZE * SIZE], first_map[SIZE * SIZE];
     easel first = easel_new(W, H, 0, 1, 0);
     tyn_mesh mesh[5];
-    tyn_light sun = {TYN_LIGHT_DIRECTIONAL, {0, 0, 0}, {0, -0.6f, -0.8f}, {3, 2, 1}, 0, {NULL, 0, {0}}};
+    tyn_light sun = {.direction = {0, -0.6f, -0.8f}, .colour = {3, 2, 1}};
     tyn_shadow shadow = {NULL, SIZE, {0}};
     tyn_raster_stats first_stats;
     int different = 0;

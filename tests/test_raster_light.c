@@ -451,8 +451,8 @@ static void test_outside(void)
     static float map[4 * 4];
     easel e = easel_new(8, 8, 64, 1, 0);
     quad q;
-    tyn_light sun = {TYN_LIGHT_DIRECTIONAL, {0, 0, 0}, {0, 0, -1}, {1, 1, 1}, 0, {NULL, 0, {0}}};
-    tyn_light spot = {TYN_LIGHT_SPOT, {0, 0, 0}, {0, 0, -1}, {1, 1, 1}, 2.5f, {NULL, 0, {0}}};
+    tyn_light sun = {.direction = {0, 0, -1}, .colour = {1, 1, 1}};
+    tyn_light spot = {.kind = TYN_LIGHT_SPOT, .position = {0, 0, 0}, .direction = {0, 0, -1}, .colour = {1, 1, 1}, .angle = 2.5f};
     const double nowhere[3] = {100, 100, 0}, here[3] = {0, 0, -4};
     TEST("raster: outside of the map a sun shines and a spot does not");
     lean(&q, 4);

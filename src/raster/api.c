@@ -155,7 +155,7 @@ static tyn_status check_surface(const tyn_raster *raster, const tyn_surface *sur
     if (status == TYN_OK)
         status = surface->light_count > TYN_MAX_LIGHTS
                      ? TYN_E_LIMIT
-                     : tyni_check_lights(surface->lights, surface->light_count, TYN_MAX_SHADOW);
+                     : tyni_check_lights(surface->lights, surface->light_count, TYN_MAX_SHADOW, TYN_MAX_MAPS);
     if (status == TYN_OK)
         status = tyni_check_media(surface->media, surface->medium_count);
     if (status == TYN_OK && (!tyni_check_colour(surface->ambient) || !tyni_check_colour(surface->background) ||
