@@ -106,7 +106,8 @@ int tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex
 {
     const tyni_raster_vertex *p = nearest(v);
     const tyni_vec3 at = position(p);
-    const tyni_vec3 r = tyni_vec(ray_through(view, 0, plane->x0).high, ray_through(view, 1, plane->y0).high, 1.0f);
+    const tyni_vec3 r = tyni_vec(view->middle[0] + ((float)plane->x0 + 0.5f - view->half[0]) * view->step[0],
+                                 view->middle[1] + ((float)plane->y0 + 0.5f - view->half[1]) * view->step[1], 1.0f);
     const float da = v[1].value - v[0].value, db = v[2].value - v[0].value;
     tyni_vec3 g = tyni_vec(0.0f, 0.0f, 0.0f);
     float distance, inverse, rest, w;
