@@ -158,9 +158,11 @@ tyn_status tyn_medium_air(tyn_medium media[2], float scale);
  * z must be a projective depth (linear on planes in u and v): linear distance for a parallel projection, near / distance for a
  * perspective one. */
 typedef struct tyn_shadow {
-    const float *depth; /* size * size floats, rows without a gap; NULL: no shadows from this light */
-    int32_t size;       /* texels, 1 .. TYN_MAX_SHADOW; 0 with depth == NULL */
-    float matrix[16];   /* must be invertible where depth is given */
+    const float *depth;    /* size * size floats, rows without a gap; NULL: no shadows from this light */
+    int32_t size;          /* texels, 1 .. TYN_MAX_SHADOW; 0 with depth == NULL */
+    float matrix[16];      /* must be invertible where depth is given */
+    const tyn_image *tint; /* colour of the light in each column of the map, such as through stained glass between the light and
+                              all that is seen: multiplies it. A texture as in tyn_light, over the whole map; NULL: white */
 } tyn_shadow;
 
 #define TYN_MAX_SHADOW 16384
@@ -187,6 +189,16 @@ typedef struct tyn_light {
     const tyn_shadow *more;
     int32_t more_count;
     tyn_outside outside;
+    /* Light textures, texture_count of them: multiply `colour`. TYN_RGB8_LINEAR, TYN_RGB16_LINEAR or TYN_RGB_F32; bilinear, the
+     * outermost half texel holds its value. NULL with 0: none.
+     *   spot:        1; a slide over the square frustum of full angle `angle`, which takes the place of the cone
+     *   directional: 1; a gobo centred on the world origin, extent[0] x extent[1] metres; dark outside
+     *   point:       6; the faces +X -X +Y -Y +Z -Z of a cube, oriented as in tyn_shadow_fit_cube
+     * Seen along `direction`: the top row is towards `up`, the right column towards direction x up. */
+    const tyn_image *textures;
+    int32_t texture_count;
+    float up[3];     /* spot, directional with a texture: not parallel to direction */
+    float extent[2]; /* directional with a texture: > 0 */
 } tyn_light;
 
 /* Sets light->shadow.matrix (nothing else) for rendering or reading a map of this light: for a spot the cone's square frustum,
@@ -265,9 +277,10 @@ typedef struct tyn_config {
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
     tyn_method method;
     tyn_rays rays;
-    int32_t maps;    /* most shadow maps of one light, 1 .. TYN_MAX_MAPS; 0: 1 */
-    int32_t lights;  /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
-    int32_t workers; /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
+    int32_t maps;     /* most shadow maps of one light, 1 .. TYN_MAX_MAPS; 0: 1 */
+    int32_t textured; /* not 0: room for lights with textures or tints; 2 more bytes a sample */
+    int32_t lights;   /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
+    int32_t workers;  /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
 } tyn_config;
 
 #define TYN_MAX_LIGHTS 16
@@ -284,12 +297,13 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
  *     static union { uint64_t align[8]; uint8_t bytes[TYN_MEMORY(320, 240, 64, 160, 256, 1, 1)]; } block;
  * (and see to its alignment: TYN_ALIGNMENT). All arguments as in tyn_config, with no zeros. */
 #define TYN_MEMORY(width, height, slices, samples, shadow_size, lights, workers)                                               \
-    TYN_MEMORY_MAPS(width, height, slices, samples, shadow_size, lights, workers, 1)
-#define TYN_MEMORY_MAPS(width, height, slices, samples, shadow_size, lights, workers, maps)                                    \
-    (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) + TYNI_BYTES(slices, 8) +        \
+    TYN_MEMORY_FULL(width, height, slices, samples, shadow_size, lights, workers, 1, 0)
+#define TYN_MEMORY_FULL(width, height, slices, samples, shadow_size, lights, workers, maps, textured)                          \
+    (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) +                                \
+     ((textured) ? TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 2) : 0) + TYNI_BYTES(slices, 12) +        \
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
      (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                    \
-                          3 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
+                          4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 #define TYN_CONTEXT_BYTES 256
 #define TYN_STATS_BYTES 128
@@ -389,7 +403,7 @@ typedef struct tyn_raster tyn_raster;
 #define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
     (0 * (size_t)(width) * (size_t)(height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +               \
      TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
-#define TYN_RASTER_BYTES 3200
+#define TYN_RASTER_BYTES 9344
 
 /* As tyn_measure and tyn_init. */
 tyn_status tyn_raster_measure(const tyn_raster_config *config, size_t *bytes);

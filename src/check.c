@@ -105,6 +105,8 @@ static tyn_status check_light(const tyn_light *l, int32_t shadow_limit, int32_t 
         return TYN_E_LIGHT;
     if (l->kind == TYN_LIGHT_SPOT && (!(l->angle > 0.0f) || !(l->angle < 2.967060f)))
         return TYN_E_LIGHT;
+    if (l->texture_count < 0 || l->texture_count > 6)
+        return TYN_E_LIGHT;
     if (l->more_count < 0 || l->more_count >= map_limit)
         return TYN_E_LIMIT;
     if (l->more_count > 0 && !l->more)

@@ -1,9 +1,9 @@
 /* entry.h - one epipolar sample as it is kept in memory: 32 bits.
  *
  * What is kept is visibility, the light divided by tyni_integral_norm, for the channel of the least and that of the largest
- * extinction: 10 bits each, as a square root relative to the line's largest, since the eye (and relative error) wants fine
- * steps in the dark. The depth it belongs to takes 12 bits, a float's own: 0 = no sample, else steps of 1/256 over 15 octaves
- * below far. */
+ * extinction (a coloured light: for red and green, and blue in an array of its own): 10 bits each, as a square root relative to
+ * the line's largest, since the eye (and relative error) wants fine steps in the dark. The depth it belongs to takes 12 bits, a
+ * float's own: 0 = no sample, else steps of 1/256 over 15 octaves below far. */
 #ifndef TYNI_ENTRY_H
 #define TYNI_ENTRY_H
 
@@ -31,6 +31,18 @@ static inline uint32_t tyni_entry_code(uint32_t entry)
 static inline float tyni_entry_depth(uint32_t entry)
 {
     return tyni_bits_float(((entry >> 20) - 1) * 0x8000u + TYNI_ENTRY_FLOOR + 0x4000u);
+}
+
+/* The third channel of a coloured light, kept apart. */
+static inline uint16_t tyni_entry_third(float value, float inverse)
+{
+    return (uint16_t)(sqrtf(tyni_clampf(value * inverse, 0.0f, 1.0f)) * 65535.0f + 0.5f);
+}
+
+static inline float tyni_entry_third_value(uint16_t third, float scale)
+{
+    float q = (float)third * (1.0f / 65535.0f);
+    return q * q * scale;
 }
 
 static inline float tyni_entry_low(uint32_t entry, const float scale[2])

@@ -11,6 +11,7 @@
 #include "base.h"
 #include "check.h"
 #include "num.h"
+#include "slide.h"
 #include "vec.h"
 #include "view.h"
 
@@ -367,14 +368,15 @@ void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *c
     float sine, cosine;
     fit f;
     fit_begin(&f, light, camera, NULL);
+    if (light->texture_count) /* its square is the slide's */
+        tyni_slide_axes(f.d, tyni_vec_load(light->up), &f.a, &f.b);
     tyni_num_sincos(0.5f * light->angle, &sine, &cosine);
     frustum(matrix, light->position, f.d, f.a, f.b, sine / cosine, light->shadow.size, farthest(light, camera, casters));
 }
 
 void tyni_fit_face(float matrix[16], const float position[3], int32_t face, float reach, int32_t texels)
 {
-    float axis[3][3] = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
-    for (int32_t i = 0; i < 3; i++) /* d, a, b: the face's axis and the two after it */
-        axis[i][(face / 2 + i) % 3] = i == 0 && face % 2 ? -1.0f : 1.0f;
-    frustum(matrix, position, tyni_vec_load(axis[0]), tyni_vec_load(axis[1]), tyni_vec_load(axis[2]), 1.0f, texels, reach);
+    tyni_vec3 d, right, down;
+    tyni_slide_face(face, &d, &right, &down);
+    frustum(matrix, position, d, right, down, 1.0f, texels, reach);
 }

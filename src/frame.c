@@ -34,7 +34,7 @@ typedef struct pass {
     tyni_slices slices;
     tyni_field field;
     tyn_method method;
-    int32_t channels[2], count; /* the channels whose visibility is kept */
+    int32_t channels[3], count; /* the channels whose visibility is kept */
     int first, last;            /* of the lights */
 } pass;
 
@@ -50,6 +50,7 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
     s->value[0] = tyni_arena_take(&arena, samples, sizeof *s->value[0]);
     s->value[1] = tyni_arena_take(&arena, samples, sizeof *s->value[1]);
+    s->value[2] = tyni_arena_take(&arena, samples, sizeof *s->value[2]);
     s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);
@@ -63,24 +64,24 @@ static int ray_range(const pass *p, tyni_vec3 v, float s, float *t0, float *t1)
 {
     *t0 = 0.0f;
     *t1 = s;
-    return s > 0.0f && tyni_view_clip_cone(&p->lamp, v, t0, t1);
+    return s > 0.0f && tyni_view_clip(&p->lamp, v, t0, t1);
 }
 
 /* Visibility of one ray in the kept channels. */
-static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, float at, tyn_stats *stats, float value[2])
+static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, float at, tyn_stats *stats, float value[3])
 {
     const tyni_medium *medium = &p->medium;
     tyni_integral it;
     float t0, t1, norm[3], light[3] = {0.0f, 0.0f, 0.0f};
-    value[0] = value[1] = 0.0f;
+    value[0] = value[1] = value[2] = 0.0f;
     stats->rays++;
     if (!ray_range(p, v, s, &t0, &t1))
         return;
     if (p->context->config.rays == TYN_RAYS_STEPS) {
         float all[3];
         tyni_ray_steps(&p->lamp, medium, v, t0, t1, p->context->config.steps, all);
-        light[0] = all[p->channels[0]];
-        light[1] = all[p->channels[1]];
+        for (int32_t i = 0; i < p->count; i++)
+            light[i] = all[p->channels[i]];
     } else {
         tyni_integral_begin(&it, medium, &p->lamp, v, t0, t1, p->channels, p->count);
         if (!row || tyni_ray_coarse(row, &it, v)) {
@@ -99,9 +100,9 @@ static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, 
         value[1] = value[0];
 }
 
-/* A spot sees depth only as far as its cone reaches: clamps to it, so that breaks behind the beam cost nothing, and marks
- * samples beside the beam by depth 0. */
-static void clamp_to_cone(const pass *p, const tyni_slice *slice, float *depth)
+/* A spot sees depth only as far as its cone (or its slide's light) reaches: clamps to it, so that breaks behind the beam cost
+ * nothing, and marks samples beside the beam by depth 0. */
+static void clamp_to_volume(const pass *p, const tyni_slice *slice, float *depth)
 {
     for (int32_t j = slice->first; j <= slice->last; j++) {
         tyni_vec3 d = tyni_vec_mad(slice->a, tyni_slice_p(&p->slices, j), slice->b);
@@ -122,8 +123,10 @@ static float reach_of(const pass *p, const tyni_slice *slice, const float *depth
 static void store_line(const pass *p, int32_t index, int32_t first, int32_t last, const tyni_scratch *s)
 {
     uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
-    float *scale = p->context->scales[index], inverse[2], far_inverse = 1.0f / p->view.far_depth;
-    for (int32_t n = 0; n < 2; n++) {
+    uint16_t *thirds = p->context->thirds + (ptrdiff_t)index * p->field.pitch;
+    float *scale = p->context->scales[index], inverse[3], far_inverse = 1.0f / p->view.far_depth;
+    int32_t count = tyni_maxi(p->count, 2);
+    for (int32_t n = 0; n < count; n++) {
         scale[n] = 0.0f;
         for (int32_t j = first; j <= last; j++)
             scale[n] = tyni_maxf(scale[n], s->value[n][j]);
@@ -132,6 +135,8 @@ static void store_line(const pass *p, int32_t index, int32_t first, int32_t last
     for (int32_t j = first; j <= last; j++)
         if (s->depth[j] > 0.0f)
             entries[j] = tyni_entry_pack(s->value[0][j], s->value[1][j], inverse, s->depth[j] * far_inverse);
+    for (int32_t j = first; j <= last && count == 3; j++)
+        thirds[j] = tyni_entry_third(s->value[2][j], inverse[2]);
 }
 
 /* The rays of the set bits. */
@@ -139,12 +144,13 @@ static void run_rays(const pass *p, const tyni_slice *slice, const uint32_t *ray
 {
     for (int32_t j = tyni_sample_next(rays, slice->first, slice->last); j <= slice->last;
          j = tyni_sample_next(rays, j + 1, slice->last)) {
-        float at = tyni_slice_p(&p->slices, j), length, value[2];
+        float at = tyni_slice_p(&p->slices, j), length, value[3];
         tyni_vec3 d = tyni_vec_mad(slice->a, at, slice->b);
         length = tyni_vec_length(d);
         ray_value(p, s->row, tyni_vec_scale(d, 1.0f / length), s->depth[j] * length, at, s->stats, value);
         s->value[0][j] = value[0];
         s->value[1][j] = value[1];
+        s->value[2][j] = value[2];
     }
 }
 
@@ -161,8 +167,8 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     if (slice.first > slice.last)
         return;
     tyni_sample_depths(s.depth, &p->slices, &slice, &p->view, &p->frame->depth);
-    if (p->lamp.kind == TYN_LIGHT_SPOT)
-        clamp_to_cone(p, &slice, s.depth);
+    if (tyni_view_bounded(&p->lamp))
+        clamp_to_volume(p, &slice, s.depth);
     s.stats->slices++;
     s.stats->samples += slice.last - slice.first + 1;
     s.stats->breaks += tyni_sample_breaks(s.breaks, s.depth, slice.first, slice.last, config->break_threshold);
@@ -174,10 +180,13 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, config->maps), &p->slices, &slice, &p->lamp,
                    reach_of(p, &slice, s.depth));
     run_rays(p, &slice, s.rays, &s);
-    while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, slice.first, slice.last, config->tolerance))
+    while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2), slice.first, slice.last,
+                              config->tolerance))
         run_rays(p, &slice, s.fresh, &s);
     tyni_sample_interpolate(s.value[0], s.rays, slice.first, slice.last);
     tyni_sample_interpolate(s.value[1], s.rays, slice.first, slice.last);
+    if (p->count == 3)
+        tyni_sample_interpolate(s.value[2], s.rays, slice.first, slice.last);
     store_line(p, index, slice.first, slice.last, &s);
 }
 
@@ -194,13 +203,14 @@ static void grid_job(void *argument, int32_t index, int32_t worker)
     for (int32_t i = 0; i < p->field.columns; i++) {
         int32_t x = tyni_mini(i * p->field.spacing, p->view.width - 1);
         tyni_vec3 d = tyni_view_direction(&p->view, (float)x + 0.5f, (float)y + 0.5f);
-        float length = tyni_vec_length(d), value[2], t0, t1;
+        float length = tyni_vec_length(d), value[3], t0, t1;
         tyni_vec3 v = tyni_vec_scale(d, 1.0f / length);
         s.depth[i] = tyni_view_depth(&p->view, depth[x]);
         ray_value(p, NULL, v, s.depth[i] * length, 0.0f, s.stats, value);
         s.depth[i] = ray_range(p, v, s.depth[i] * length, &t0, &t1) ? t1 / length : 0.0f;
         s.value[0][i] = value[0];
         s.value[1][i] = value[1];
+        s.value[2][i] = value[2];
     }
     s.stats->samples += p->field.columns;
     store_line(p, index, 0, p->field.columns - 1, &s);
@@ -235,9 +245,13 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
                 rgb[3 * i + c] += light[c];
             continue;
         }
-        light[m->low] = value[0];
-        light[m->high] = value[1];
-        light[m->middle] = value[0] + (value[1] - value[0]) * m->blend;
+        if (p->count == 3) {
+            memcpy(light, value, sizeof light);
+        } else {
+            light[m->low] = value[0];
+            light[m->high] = value[1];
+            light[m->middle] = value[0] + (value[1] - value[0]) * m->blend;
+        }
         tyni_integral_norm(m, &p->lamp, v, t0, t1, norm);
         mix[0] = mix[1] = mix[2] = 1.0f;
         if (p->lamp.kind == TYN_LIGHT_DIRECTIONAL)
@@ -335,6 +349,17 @@ static uint64_t now(const tyn_frame *frame)
     return frame->clock ? frame->clock(frame->clock_context) : 0;
 }
 
+/* White light: the channels of least and largest extinction, or one if they are equal. Coloured: all. */
+static void choose_channels(pass *p)
+{
+    const tyni_medium *m = &p->medium;
+    p->count = p->lamp.coloured ? 3 : p->lamp.kind == TYN_LIGHT_DIRECTIONAL && m->sigma[m->low] == m->sigma[m->high] ? 1 : 2;
+    p->channels[0] = p->lamp.coloured ? 0 : m->low;
+    p->channels[1] = p->lamp.coloured ? 1 : m->high;
+    p->channels[2] = 2;
+    p->field.thirds = p->lamp.coloured ? p->context->thirds : NULL;
+}
+
 static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *light, tyn_stats *stats)
 {
     tyn_context *c = p->context;
@@ -349,13 +374,10 @@ static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *
     if (p->method == TYN_METHOD_EPIPOLAR && p->lamp.at_camera)
         p->method = TYN_METHOD_MARCH;
     p->field.entries = c->entries;
-    p->field.scales = (const float(*)[2])c->scales;
+    p->field.scales = (const float(*)[3])c->scales;
     p->field.pitch = c->samples;
     p->field.threshold = c->config.break_threshold;
-    p->channels[0] = p->medium.low;
-    p->channels[1] = p->medium.high;
-    p->count =
-        p->lamp.kind == TYN_LIGHT_DIRECTIONAL && p->medium.sigma[p->medium.low] == p->medium.sigma[p->medium.high] ? 1 : 2;
+    choose_channels(p);
     if (p->method == TYN_METHOD_EPIPOLAR) {
         int32_t stride = tyni_slice_stride(p->view.width, p->view.height, c->samples);
         tyni_slice_layout(&p->slices, &p->lamp, p->view.width, p->view.height, c->config.slices, stride);
@@ -463,6 +485,7 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     samples = (size_t)c->samples;
     words = (size_t)tyni_sample_words(c->samples);
     c->entries = tyni_arena_take(arena, samples * (size_t)g->slices, sizeof *c->entries);
+    c->thirds = g->textured ? tyni_arena_take(arena, samples * (size_t)g->slices, sizeof *c->thirds) : NULL;
     c->scales = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->scales);
     c->light = g->lights > 1 ? tyni_arena_take(arena, (size_t)g->width * (size_t)g->height, 3 * sizeof *c->light) : NULL;
     c->counts = tyni_arena_take(arena, (size_t)g->workers, sizeof *c->counts);
@@ -470,7 +493,7 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     tyni_arena_take(&one, 1, TYN_ROW_BYTES);
     tyni_arena_take(&one, 2 * tyni_row_room(g->shadow_size, g->maps), sizeof(uint16_t));
     tyni_arena_take(&one, tyni_row_room(g->shadow_size, g->maps), sizeof(float));
-    for (int32_t i = 0; i < 3; i++)
+    for (int32_t i = 0; i < 4; i++)
         tyni_arena_take(&one, samples, sizeof(float));
     for (int32_t i = 0; i < 3; i++)
         tyni_arena_take(&one, words, sizeof(uint32_t));

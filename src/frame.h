@@ -14,7 +14,7 @@ typedef struct tyni_scratch {
     uint16_t *threshold;             /* 2 * tyni_row_room */
     float *split;                    /* tyni_row_room */
     float *depth;                    /* samples */
-    float *value[2];                 /* samples: visibility, low and high */
+    float *value[3];                 /* samples: visibility, low and high */
     uint32_t *breaks, *rays, *fresh; /* bits */
     tyn_stats *stats;
 } tyni_scratch;
@@ -24,7 +24,8 @@ struct tyn_context {
     size_t bytes;
     int32_t samples;    /* room per line */
     uint32_t *entries;  /* slices * samples */
-    float (*scales)[2]; /* slices */
+    uint16_t *thirds;   /* the same, with config.textured, else NULL */
+    float (*scales)[3]; /* slices */
     float *light;       /* width * height * 3 with more than one light, else NULL: L_scat of the lights before */
     tyni_jobs_count *counts;
     uint8_t *scratch; /* workers * scratch_bytes */

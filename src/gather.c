@@ -8,7 +8,7 @@
 #define ENOUGH 0.15f
 
 typedef struct sum {
-    float low, high, weight;
+    float low, high, third, weight;
 } sum;
 
 /* 1 within the threshold, then falling with the fourth power (IVB section 6.6). */
@@ -31,20 +31,24 @@ static void tap(sum *s, const tyni_field *field, int32_t line, int32_t sample, f
     s->weight += weight;
     s->low += weight * tyni_entry_low(entry, field->scales[line]);
     s->high += weight * tyni_entry_high(entry, field->scales[line]);
+    if (field->thirds)
+        s->third +=
+            weight * tyni_entry_third_value(field->thirds[(ptrdiff_t)line * field->pitch + sample], field->scales[line][2]);
 }
 
-static int settle(const sum *s, float least, float value[2])
+static int settle(const sum *s, float least, float value[3])
 {
     if (!(s->weight > least))
         return 0;
     value[0] = s->low / s->weight;
     value[1] = s->high / s->weight;
+    value[2] = s->third / s->weight;
     return 1;
 }
 
-int tyni_gather_slices(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[2])
+int tyni_gather_slices(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
 {
-    sum s = {0.0f, 0.0f, 0.0f};
+    sum s = {0.0f, 0.0f, 0.0f, 0.0f};
     float k, at, f;
     const tyni_sector *sector = tyni_slice_find(slices, x, y, &k);
     int32_t line, sample, p, r;
@@ -70,18 +74,18 @@ int tyni_gather_slices(const tyni_field *field, const tyni_slices *slices, float
     return settle(&s, ENOUGH, value);
 }
 
-void tyni_gather_grid(const tyni_field *field, float x, float y, float depth, float value[2])
+void tyni_gather_grid(const tyni_field *field, float x, float y, float depth, float value[3])
 {
-    sum s = {0.0f, 0.0f, 0.0f}, best = {0.0f, 0.0f, 0.0f};
+    sum s = {0.0f, 0.0f, 0.0f, 0.0f}, best = {0.0f, 0.0f, 0.0f, 0.0f};
     float gx = tyni_clampf((x - 0.5f) / (float)field->spacing, 0.0f, (float)(field->columns - 1));
     float gy = tyni_clampf((y - 0.5f) / (float)field->spacing, 0.0f, (float)(field->rows - 1));
     int32_t i = tyni_mini((int32_t)gx, tyni_maxi(field->columns - 2, 0)),
             j = tyni_mini((int32_t)gy, tyni_maxi(field->rows - 2, 0));
     float fx = gx - (float)i, fy = gy - (float)j;
-    value[0] = value[1] = 0.0f;
+    value[0] = value[1] = value[2] = 0.0f;
     for (int32_t n = 0; n < 4; n++) {
         int32_t dx = n & 1, dy = n >> 1;
-        sum one = {0.0f, 0.0f, 0.0f};
+        sum one = {0.0f, 0.0f, 0.0f, 0.0f};
         if (i + dx >= field->columns || j + dy >= field->rows)
             continue;
         tap(&s, field, j + dy, i + dx, depth, (dx ? fx : 1.0f - fx) * (dy ? fy : 1.0f - fy));

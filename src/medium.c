@@ -179,10 +179,13 @@ static void hermite(const tyni_integral *it, float s, float *out)
     }
 }
 
+static float path_psi(const tyni_path *p, float t)
+{
+    return tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h);
+}
+
 void tyni_integral_at(const tyni_integral *it, float t, float *out)
 {
-    const tyni_path *p = &it->path;
-    float psi;
     t = tyni_clampf(t, it->t0, it->t1);
     if (!it->local) {
         for (int32_t i = 0; i < it->count; i++) {
@@ -193,8 +196,17 @@ void tyni_integral_at(const tyni_integral *it, float t, float *out)
         }
         return;
     }
-    psi = tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h);
-    hermite(it, it->step > 0.0f ? tyni_clampf(psi / it->step, 0.0f, (float)(it->knots - 1)) : 0.0f, out);
+    hermite(it, it->step > 0.0f ? tyni_clampf(path_psi(&it->path, t) / it->step, 0.0f, (float)(it->knots - 1)) : 0.0f, out);
+}
+
+float tyni_integral_between(const tyni_integral *it, float ta, float tb, float f)
+{
+    float a, b;
+    if (!it->local)
+        return ta + (tb - ta) * f;
+    a = path_psi(&it->path, ta);
+    b = path_psi(&it->path, tb);
+    return path_t(&it->path, a + (b - a) * f);
 }
 
 void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3])
@@ -206,7 +218,7 @@ void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_v
     tyni_path p;
     if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
-            norm[c] = t1 * tyni_num_fog(medium->sigma[c] * t1);
+            norm[c] = t1 * tyni_num_fog(medium->sigma[c] * t1) - t0 * tyni_num_fog(medium->sigma[c] * t0);
         return;
     }
     norm[0] = norm[1] = norm[2] = 0.0f;

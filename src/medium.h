@@ -64,9 +64,12 @@ typedef struct tyni_integral {
     float value[3][TYNI_MEDIUM_KNOTS]; /* the integrand there, times step */
 } tyni_integral;
 
-/* t0 .. t1 must lie inside the cone (tyni_view_clip_cone). */
+/* t0 .. t1 must lie inside the light's volume (tyni_view_clip). */
 void tyni_integral_begin(tyni_integral *integral, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0,
                          float t1, const int32_t *channels, int32_t count);
+
+/* Parameter of equal angle (local light) or length: t at the part f, 0 .. 1, of the way from ta to tb. */
+float tyni_integral_between(const tyni_integral *integral, float ta, float tb, float f);
 
 /* out[n]: from t0 to t. Never falls with t beyond rounding. */
 void tyni_integral_at(const tyni_integral *integral, float t, float *out);

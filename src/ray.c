@@ -7,18 +7,68 @@
  * is whatever differs from `outside`: shadows where all else is lit, light where all else is dark. */
 typedef struct meter {
     const tyni_integral *integral;
+    const tyni_lamp *lamp;
+    tyni_vec3 v;
     float *sum;
+    float from; /* t of the last switch */
     int outside, on;
 } meter;
 
-static void meter_begin(meter *m, const tyni_integral *integral, int outside, float *sum)
+static void meter_begin(meter *m, const tyni_integral *integral, const tyni_lamp *lamp, tyni_vec3 v, float *sum)
 {
     m->integral = integral;
+    m->lamp = lamp;
+    m->v = v;
     m->sum = sum;
-    m->outside = outside;
+    m->outside = lamp->outside;
     m->on = 0;
     for (int32_t i = 0; i < integral->count; i++)
         sum[i] = 0.0f;
+}
+
+/* Parts in which a slide's or tint's colour is taken as one: one per texel crossed, about. */
+static int32_t colour_parts(const meter *m, float ta, float tb)
+{
+    const tyni_lamp *lamp = m->lamp;
+    float texels = 0.0f;
+    for (int32_t i = 0; i < lamp->slide_count + lamp->map_count; i++) {
+        const tyni_form *s = i < lamp->slide_count ? &lamp->slides[i].s : &lamp->maps[i - lamp->slide_count].u;
+        const tyni_form *t = i < lamp->slide_count ? &lamp->slides[i].t : &lamp->maps[i - lamp->slide_count].v;
+        const tyni_form *w = i < lamp->slide_count ? &lamp->slides[i].w : &lamp->maps[i - lamp->slide_count].w;
+        tyni_vec3 a = tyni_vec_scale(m->v, ta), b = tyni_vec_scale(m->v, tb);
+        float wa = tyni_form_at(w, a), wb = tyni_form_at(w, b), ds, dt, scale = 1.0f;
+        if (i >= lamp->slide_count) {
+            const tyni_map *map = &lamp->maps[i - lamp->slide_count];
+            if (!map->tint)
+                continue;
+            scale = (float)tyni_maxi(map->tint->width, map->tint->height) / (float)map->size;
+        }
+        if (!(wa > 0.0f && wb > 0.0f)) {
+            texels = 4096.0f; /* from one face of a cube to another */
+            continue;
+        }
+        ds = tyni_form_at(s, b) / wb - tyni_form_at(s, a) / wa;
+        dt = tyni_form_at(t, b) / wb - tyni_form_at(t, a) / wa;
+        texels = tyni_maxf(texels, scale * (tyni_absf(ds) + tyni_absf(dt)));
+    }
+    return 1 + (int32_t)tyni_minf(texels, lamp->kind == TYN_LIGHT_POINT ? 1024.0f : 4096.0f);
+}
+
+/* The integral from ta to tb, times the light's colour column by column. */
+static void meter_coloured(meter *m, float ta, float tb)
+{
+    int32_t parts = colour_parts(m, ta, tb);
+    float last[3], next[3], rgb[3];
+    tyni_integral_at(m->integral, ta, last);
+    for (int32_t k = 0; k < parts; k++) {
+        float middle = tyni_integral_between(m->integral, ta, tb, ((float)k + 0.5f) / (float)parts);
+        float end = k + 1 < parts ? tyni_integral_between(m->integral, ta, tb, (float)(k + 1) / (float)parts) : tb;
+        tyni_integral_at(m->integral, end, next);
+        tyni_view_colour(m->lamp, tyni_vec_scale(m->v, middle), rgb);
+        for (int32_t i = 0; i < m->integral->count; i++)
+            m->sum[i] += (next[i] - last[i]) * rgb[m->integral->channels[i]];
+        memcpy(last, next, sizeof last);
+    }
 }
 
 static void meter_lit(meter *m, int lit, float t)
@@ -27,15 +77,32 @@ static void meter_lit(meter *m, int lit, float t)
     int on = lit != m->outside;
     if (on == m->on)
         return;
+    m->on = on;
+    if (m->lamp->coloured) {
+        if (!on && t > m->from)
+            meter_coloured(m, m->from, t);
+        m->from = t;
+        return;
+    }
     tyni_integral_at(m->integral, t, at);
     for (int32_t i = 0; i < m->integral->count; i++)
         m->sum[i] += on ? -at[i] : at[i];
-    m->on = on;
 }
 
 static void meter_end(meter *m)
 {
-    float all[3];
+    float all[3], shade[3];
+    if (m->outside && m->lamp->coloured) {
+        memcpy(shade, m->sum, sizeof *shade * (size_t)m->integral->count);
+        for (int32_t i = 0; i < m->integral->count; i++)
+            m->sum[i] = 0.0f;
+        meter_coloured(m, m->integral->t0, m->integral->t1);
+        for (int32_t i = 0; i < m->integral->count; i++)
+            m->sum[i] = tyni_maxf(m->sum[i] - shade[i], 0.0f);
+        return;
+    }
+    if (m->lamp->coloured)
+        return;
     tyni_integral_at(m->integral, m->integral->t1, all);
     for (int32_t i = 0; i < m->integral->count; i++)
         m->sum[i] = tyni_clampf(m->outside ? all[i] - m->sum[i] : m->sum[i], 0.0f, all[i]);
@@ -179,7 +246,7 @@ void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, 
     int32_t parts = 1;
     meter m;
     track k;
-    meter_begin(&m, it, lamp->outside, light);
+    meter_begin(&m, it, lamp, v, light);
     if (!(it->t0 < it->t1))
         return;
     part[0][0] = it->t0;
@@ -259,7 +326,7 @@ void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyn
 {
     uint32_t position = tyni_row_position(row, p);
     meter m;
-    meter_begin(&m, it, lamp->outside, light);
+    meter_begin(&m, it, lamp, v, light);
     if (!(it->t0 < it->t1))
         return;
     for (int32_t i = 0; i < row->count; i++) {
@@ -314,7 +381,7 @@ static int point_lit(const tyni_lamp *lamp, tyni_vec3 v, float t)
 void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float t0, float t1, int32_t steps,
                     float light[3])
 {
-    float dt = (t1 - t0) / (float)steps, density[3];
+    float dt = (t1 - t0) / (float)steps, density[3], rgb[3] = {1.0f, 1.0f, 1.0f};
     light[0] = light[1] = light[2] = 0.0f;
     if (!(dt > 0.0f))
         return;
@@ -323,8 +390,10 @@ void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 
         if (!point_lit(lamp, v, t))
             continue;
         tyni_integral_density(medium, lamp, v, t, density);
+        if (lamp->coloured)
+            tyni_view_colour(lamp, tyni_vec_scale(v, t), rgb);
         for (int32_t c = 0; c < 3; c++)
-            light[c] += density[c] * dt;
+            light[c] += density[c] * dt * rgb[c];
     }
 }
 
@@ -334,7 +403,7 @@ void tyni_ray_pixel(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 
     float t0 = 0.0f, t1 = s, mix[3];
     tyni_integral it;
     light[0] = light[1] = light[2] = 0.0f;
-    if (!tyni_view_clip_cone(lamp, v, &t0, &t1))
+    if (!tyni_view_clip(lamp, v, &t0, &t1))
         return;
     if (steps) {
         tyni_ray_steps(lamp, medium, v, t0, t1, steps, light);

@@ -86,6 +86,14 @@ static int bent(const float *value, int32_t a, int32_t b, int32_t c, float toler
     return tyni_absf(value[b] - between) > tolerance;
 }
 
+static int any_bent(float *const value[3], int32_t values, int32_t a, int32_t b, int32_t c, float tolerance)
+{
+    for (int32_t i = 0; i < values; i++)
+        if (bent(value[i], a, b, c, tolerance))
+            return 1;
+    return 0;
+}
+
 static int32_t halve(uint32_t *fresh, int32_t a, int32_t b)
 {
     if (b - a < 2)
@@ -97,8 +105,8 @@ static int32_t halve(uint32_t *fresh, int32_t a, int32_t b)
     return 1;
 }
 
-int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, float *const value[2], int32_t first,
-                           int32_t last, float tolerance)
+int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, float *const value[3], int32_t values,
+                           int32_t first, int32_t last, float tolerance)
 {
     int32_t a = first, before = -1, words = tyni_sample_words(last + 1), count = 0;
     memset(fresh, 0, sizeof *fresh * (size_t)words);
@@ -111,7 +119,7 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
         } else {
             if (alone && b - a > 4)
                 count += halve(fresh, a, b);
-            if (before >= 0 && (bent(value[0], before, a, b, tolerance) || bent(value[1], before, a, b, tolerance)))
+            if (before >= 0 && any_bent(value, values, before, a, b, tolerance))
                 count += halve(fresh, before, a) + halve(fresh, a, b);
             before = a;
         }

@@ -71,12 +71,15 @@ static void shadow_map(tyni_lamp *lamp, const tyn_shadow *shadow, const tyni_vie
     map->z = form(shadow->matrix + 8, view, scale);
     map->w = form(shadow->matrix + 12, view, scale);
     map->depth = shadow->depth;
+    map->tint = shadow->tint;
+    lamp->coloured |= shadow->tint != NULL;
     map->size = shadow->size;
     lamp->map_count++;
 }
 
 void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view)
 {
+    const float origin[3] = {view->position.x, view->position.y, view->position.z};
     float sine;
     memset(lamp, 0, sizeof *lamp);
     lamp->kind = light->kind;
@@ -95,6 +98,8 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
         lamp->at_camera = lamp->distance <= 1e-4f * view->near_depth;
     }
     epipole(lamp, view);
+    lamp->slide_count = tyni_slide_set(lamp->slides, light, origin);
+    lamp->coloured = lamp->slide_count > 0;
     shadow_map(lamp, &light->shadow, view);
     for (int32_t i = 0; i < light->more_count; i++)
         shadow_map(lamp, &light->more[i], view);
@@ -105,12 +110,10 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
 /* With T = t - (closest approach) the point is T v - h, h at right angles to v, and the double cone
  *     (T v.a - h.a)^2 >= k^2 (T^2 + h^2)
  * is a quadratic in T without the cancellation of the usual form. */
-int tyni_view_clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
+static int clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
 {
     float tc, va, ha, k2, a, c, disc, root, b, r1, r2, swap;
     tyni_vec3 h;
-    if (lamp->kind != TYN_LIGHT_SPOT)
-        return *t0 < *t1;
     tc = tyni_vec_dot(v, lamp->position);
     h = tyni_vec_mad(lamp->position, -tc, v);
     va = tyni_vec_dot(v, lamp->axis);
@@ -143,4 +146,60 @@ int tyni_view_clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1
         *t1 = tyni_minf(*t1, tc + r1);
     }
     return *t0 < *t1;
+}
+
+/* Narrows t0 .. t1 to where a.p * x + b.p >= 0 along p = t v. */
+static void clip_form(const tyni_form *a, float x, const tyni_form *b, tyni_vec3 v, float *t0, float *t1)
+{
+    float c = a->c * x + b->c, d = tyni_vec_dot(a->v, v) * x + tyni_vec_dot(b->v, v);
+    if (d > 0.0f)
+        *t0 = tyni_maxf(*t0, -c / d);
+    else if (d < 0.0f)
+        *t1 = tyni_minf(*t1, -c / d);
+    else if (c < 0.0f)
+        *t1 = *t0;
+}
+
+static int clip_slide(const tyni_slide *slide, tyni_vec3 v, float *t0, float *t1)
+{
+    clip_form(&slide->w, 0.0f, &slide->s, v, t0, t1);
+    clip_form(&slide->w, 0.0f, &slide->t, v, t0, t1);
+    clip_form(&slide->s, -1.0f / (float)slide->image->width, &slide->w, v, t0, t1);
+    clip_form(&slide->t, -1.0f / (float)slide->image->height, &slide->w, v, t0, t1);
+    return *t0 < *t1;
+}
+
+int tyni_view_clip(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
+{
+    if (lamp->slide_count && lamp->kind != TYN_LIGHT_POINT)
+        return clip_slide(&lamp->slides[0], v, t0, t1);
+    return lamp->kind == TYN_LIGHT_SPOT ? clip_cone(lamp, v, t0, t1) : *t0 < *t1;
+}
+
+static void tint(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3])
+{
+    for (int32_t i = 0; i < lamp->map_count; i++) {
+        const tyni_map *map = &lamp->maps[i];
+        float w = tyni_form_at(&map->w, p), u, v, size = (float)map->size, own[3];
+        if (!(w > 0.0f))
+            continue;
+        u = tyni_form_at(&map->u, p) / w;
+        v = tyni_form_at(&map->v, p) / w;
+        if (!(u >= 0.0f && v >= 0.0f && u <= size && v <= size))
+            continue;
+        if (map->tint) {
+            tyni_slide_sample(map->tint, u / size * (float)map->tint->width, v / size * (float)map->tint->height, own);
+            for (int32_t c = 0; c < 3; c++)
+                rgb[c] *= own[c];
+        }
+        return;
+    }
+}
+
+void tyni_view_colour(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3])
+{
+    rgb[0] = rgb[1] = rgb[2] = 1.0f;
+    if (lamp->slide_count)
+        tyni_slide_colour(lamp->slides, lamp->slide_count, p, rgb);
+    tint(lamp, p, rgb);
 }

@@ -4,6 +4,7 @@
 #ifndef TYNI_VIEW_H
 #define TYNI_VIEW_H
 
+#include "slide.h"
 #include "vec.h"
 
 #include "base.h"
@@ -33,17 +34,12 @@ static inline float tyni_view_depth(const tyni_view *view, float depth)
     return depth > 0.0f ? depth : 0.0f;
 }
 
-/* A linear form of a camera-relative point: v . p + c. */
-typedef struct tyni_form {
-    tyni_vec3 v;
-    float c;
-} tyni_form;
-
 /* A shadow map as the camera sees it: u and v in texels. */
 typedef struct tyni_map {
     const float *depth;
     int32_t size;
     tyni_form u, v, z, w;
+    const tyn_image *tint; /* NULL: none */
 } tyni_map;
 
 /* A light as the camera sees it. */
@@ -62,6 +58,9 @@ typedef struct tyni_lamp {
     float ex, ey, ew;
     int behind;
     /* Shadow maps: a point belongs to the first that covers it. `outside`: whether what none covers is lit. */
+    int32_t slide_count;
+    tyni_slide slides[6];
+    int coloured; /* slides or tints: the light's colour differs from column to column */
     int outside;
     int32_t map_count;
     tyni_map maps[TYN_MAX_MAPS];
@@ -69,8 +68,17 @@ typedef struct tyni_lamp {
 
 void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view);
 
-/* The part of the ray t * v (|v| = 1, t0 <= t <= t1) inside a spot's cone; 0 if there is none. A directional light: all of it.
- */
-int tyni_view_clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1);
+/* The part of the ray t * v (|v| = 1, t0 <= t <= t1) inside the volume that the light reaches: a spot's cone, or the frustum or
+ * column of its slide. 0 if there is none. */
+int tyni_view_clip(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1);
+
+/* True if that is not all space. */
+static inline int tyni_view_bounded(const tyni_lamp *lamp)
+{
+    return lamp->kind == TYN_LIGHT_SPOT || (lamp->kind == TYN_LIGHT_DIRECTIONAL && lamp->slide_count);
+}
+
+/* Slides and tints at a point relative to the camera. */
+void tyni_view_colour(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3]);
 
 #endif

@@ -358,7 +358,7 @@ static void test_order(void)
     easel first = easel_new(W, H, 0, 1, 0);
     tyn_mesh mesh[5];
     tyn_light sun = {.direction = {0, -0.6f, -0.8f}, .colour = {3, 2, 1}};
-    tyn_shadow shadow = {NULL, SIZE, {0}};
+    tyn_shadow shadow = {.size = SIZE};
     tyn_raster_stats first_stats;
     int different = 0;
     TEST("raster: same bytes for any workers, order and batch");
