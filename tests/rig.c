@@ -68,10 +68,12 @@ static void make_meshes(rig *r, const oracle_scene *scene)
 
 static void make_lights(rig *r, const oracle_scene *scene)
 {
+    static const tyn_light_kind kinds[] = {
+        [ORACLE_DIRECTIONAL] = TYN_LIGHT_DIRECTIONAL, [ORACLE_SPOT] = TYN_LIGHT_SPOT, [ORACLE_POINT] = TYN_LIGHT_POINT};
     for (int i = 0; i < scene->lights; i++) {
         const oracle_light *from = &scene->light[i];
         tyn_light *to = &r->light[i];
-        to->kind = from->kind == ORACLE_SPOT ? TYN_LIGHT_SPOT : TYN_LIGHT_DIRECTIONAL;
+        to->kind = kinds[from->kind];
         narrow(to->position, from->position, 3);
         narrow(to->direction, from->direction, 3);
         narrow(to->colour, from->colour, 3);
@@ -95,6 +97,34 @@ static int failed(tyn_status status, const char *call)
     return status != TYN_OK;
 }
 
+/* The maps of a light: one, or a cube's six. */
+static int draw_maps(rig *r, tyn_raster *raster, int i)
+{
+    const size_t texels = (size_t)r->shadow_size * (size_t)r->shadow_size;
+    tyn_light *light = &r->light[i];
+    tyn_shadow *face = r->face[i];
+    int faces = light->kind == TYN_LIGHT_POINT ? 6 : 1, bad = 0;
+    for (int f = 0; f < faces; f++) {
+        face[f].size = r->shadow_size;
+        face[f].depth = r->map[i] + texels * (size_t)f;
+    }
+    light->shadow = face[0];
+    if (faces == 6) {
+        bad = failed(tyn_shadow_fit_cube(face, light->position, r->camera.far_depth), "tyn_shadow_fit_cube");
+        light->shadow = face[0];
+        light->more = face + 1;
+        light->more_count = 5;
+    } else {
+        bad = failed(tyn_shadow_fit(light, &r->camera, r->bounds_min, r->bounds_max), "tyn_shadow_fit");
+        face[0] = light->shadow;
+    }
+    for (int f = 0; f < faces && !bad; f++)
+        bad = failed(
+            tyn_raster_shadow(raster, &face[f], r->map[i] + texels * (size_t)f, r->mesh, r->meshes, NULL, NULL, NULL, NULL),
+            "tyn_raster_shadow");
+    return !bad;
+}
+
 /* Shadow maps, then the picture without a medium. */
 static int draw(rig *r, const oracle_scene *scene)
 {
@@ -110,14 +140,8 @@ static int draw(rig *r, const oracle_scene *scene)
         return 0;
     block = rig_block(bytes);
     bad = !block || failed(tyn_raster_init(&raster, &config, block, bytes), "tyn_raster_init");
-    for (int i = 0; !bad && i < r->lights; i++) {
-        tyn_light *light = &r->light[i];
-        bad = failed(tyn_shadow_fit(light, &r->camera, r->bounds_min, r->bounds_max), "tyn_shadow_fit");
-        light->shadow.size = r->shadow_size;
-        light->shadow.depth = r->map[i];
-        bad = bad || failed(tyn_raster_shadow(raster, &light->shadow, r->map[i], r->mesh, r->meshes, NULL, NULL, NULL, NULL),
-                            "tyn_raster_shadow");
-    }
+    for (int i = 0; !bad && i < r->lights; i++)
+        bad = !draw_maps(r, raster, i);
     memset(&surface, 0, sizeof surface);
     surface.camera = r->camera;
     surface.meshes = r->mesh;
@@ -157,7 +181,7 @@ rig *rig_new(const oracle_scene *scene, int32_t shadow_size)
     r->target = calloc(pixels, 4);
     ready = r->mesh && r->positions && r->depth && r->colour && r->scatter && r->target;
     for (int i = 0; i < scene->lights; i++) {
-        r->map[i] = calloc(texels, sizeof *r->map[i]);
+        r->map[i] = calloc(texels, (scene->light[i].kind == ORACLE_POINT ? 6 : 1) * sizeof *r->map[i]);
         ready = ready && r->map[i];
     }
     if (ready) {
@@ -200,6 +224,14 @@ rig *rig_stock(const char *name, int width, int height, int32_t shadow_size)
     return r;
 }
 
+int32_t rig_maps(const rig *r)
+{
+    int32_t maps = 1;
+    for (int i = 0; i < r->lights; i++)
+        maps = r->light[i].more_count + 1 > maps ? r->light[i].more_count + 1 : maps;
+    return maps;
+}
+
 tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays)
 {
     tyn_config config;
@@ -208,6 +240,7 @@ tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays)
     config.height = r->height;
     config.shadow_size = r->shadow_size;
     config.lights = r->lights > 1 ? r->lights : 1;
+    config.maps = rig_maps(r);
     config.method = method;
     config.rays = rays;
     return config;

@@ -12,7 +12,8 @@ typedef struct rig {
     int32_t lights, media, meshes;
     tyn_mesh *mesh;
     float *positions;
-    float *map[ORACLE_LIGHTS];
+    tyn_shadow face[ORACLE_LIGHTS][6]; /* of point lights; the first is the light's own */
+    float *map[ORACLE_LIGHTS];         /* of a point light: six */
     float bounds_min[3], bounds_max[3];
     float *depth, *colour, *scatter; /* width * height (* 3), without gaps */
     uint8_t *target;                 /* RGBA8 */
@@ -35,6 +36,9 @@ typedef struct rig_way {
 } rig_way;
 enum { RIG_WAYS = 5 };
 extern const rig_way rig_ways[RIG_WAYS];
+
+/* The most shadow maps that a light of the rig has. */
+int32_t rig_maps(const rig *r);
 
 /* A config of the rig's size and lights with the method; the rest is left 0. */
 tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays);

@@ -31,6 +31,10 @@ const stock stock_list[] = {
     {"lamp behind, on the axis", ORACLE_SPOT, {0.24, 1.44, 6}, {0, 1.8, -6}, 50, HAZE, LEVEL},
     {"lamp shining away", ORACLE_SPOT, {-2, 2, -3}, {-1, 1.5, -12}, 60, HAZE, LEVEL},
     {"lamp in thick air", ORACLE_SPOT, {-3, 4, -6}, {1, 0, -2}, 60, 0.6, LEVEL},
+    {"bulb in view", ORACLE_POINT, {-0.6, 1.2, -6.5}, {0, 0, 0}, 0, HAZE, LEVEL},
+    {"bulb off the right", ORACLE_POINT, {6, 2.5, -3.5}, {0, 0, 0}, 0, HAZE, LEVEL},
+    {"bulb over the camera", ORACLE_POINT, {0.3, 3.2, 4.2}, {0, 0, 0}, 0, HAZE, LEVEL},
+    {"bulb behind the camera", ORACLE_POINT, {-1.5, 1.8, 7}, {0, 0, 0}, 0, HAZE, LEVEL},
 };
 const int stock_count = (int)(sizeof stock_list / sizeof *stock_list);
 
@@ -57,8 +61,9 @@ static oracle_scene *make(const stock *s, int width, int height)
         scene->background[k] = 0.2 + 0.1 * k;
         scene->ambient[k] = 0.2;
     }
-    if (s->kind == ORACLE_SPOT) {
+    if (s->kind != ORACLE_DIRECTIONAL) {
         model_spot(scene, s->light[0], s->light[1], s->light[2], s->target[0], s->target[1], s->target[2], s->angle, 120);
+        scene->light[0].kind = s->kind;
         return scene;
     }
     camera = &scene->camera;

@@ -7,7 +7,7 @@
 typedef struct stock {
     const char *name;
     oracle_kind kind;
-    double light[3];  /* sun: the way to it as right, up, forward of the camera; spot: its position */
+    double light[3];  /* sun: the way to it as right, up, forward of the camera; spot, point: its position */
     double target[3]; /* spot */
     double angle;     /* spot, degrees */
     double air;       /* scattering of the haze, 1/m */

@@ -70,6 +70,7 @@ static void check_scene(const stock *s, int say)
         double gap;
         CHECK(tyn_config_preset(&config, w->preset, WIDTH, HEIGHT) == TYN_OK);
         config.shadow_size = SHADOW;
+        config.maps = rig_maps(r);
         config.method = w->method;
         config.rays = w->rays;
         config.steps = 200;

@@ -151,6 +151,104 @@ static void test_fit(void)
         }
 }
 
+static void test_fit_scene(void)
+{
+    static const float corners[12] = {-5, 0, 5, 5, 0, 5, 0, 0, -9, 0, 4, 0};
+    static const uint32_t indices[6] = {0, 1, 2, 0, 1, 3};
+    static float depth_pixels[4] = {3, 9, 50, 20};
+    const float from[3] = {0, 1, 8}, to[3] = {0, 1, 0}, up[3] = {0, 1, 0};
+    tyn_image depth = {depth_pixels, 2, 2, 0, TYN_DEPTH_F32}, odd;
+    tyn_mesh mesh, bad;
+    tyn_camera camera;
+    tyn_light light, before;
+    TEST("tyn_shadow_fit_scene");
+    memset(&mesh, 0, sizeof mesh);
+    mesh.positions = corners;
+    mesh.indices = indices;
+    mesh.vertices = 4;
+    mesh.triangles = 2;
+    CHECK(tyn_camera_look(&camera, from, to, up, 1, 0.1f, 50, 64, 48) == TYN_OK);
+    memset(&light, 0, sizeof light);
+    light.direction[1] = -1;
+    before = light;
+    CHECK(tyn_shadow_fit_scene(NULL, &camera, &depth, &mesh, 1) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit_scene(&light, NULL, &depth, &mesh, 1) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, NULL, 1) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &mesh, -1) == TYN_E_LIMIT);
+    bad = mesh, bad.vertices = 3;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &bad, 1) == TYN_E_MESH);
+    bad = mesh, bad.positions = NULL;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &bad, 1) == TYN_E_NULL);
+    bad = mesh, bad.indices = NULL;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &bad, 1) == TYN_E_NULL);
+    odd = depth, odd.format = TYN_RGB_F32;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &odd, &mesh, 1) == TYN_E_IMAGE);
+    odd = depth, odd.pixels = (char *)depth_pixels + 1;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &odd, &mesh, 1) == TYN_E_ALIGN);
+    light.direction[1] = -3, before = light;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &mesh, 1) == TYN_E_LIGHT);
+    light.direction[1] = -1, before.direction[1] = -1;
+    camera.near_depth = -1;
+    CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &mesh, 1) == TYN_E_CAMERA);
+    camera.near_depth = 0.1f;
+    CHECK(memcmp(&light, &before, sizeof light) == 0);
+    /* the board's top and the ground under it are in the map, whatever the depth buffer and the meshes are */
+    for (int n = 0; n < 4; n++) {
+        float *m = light.shadow.matrix, z[2];
+        memset(m, 0, sizeof light.shadow.matrix);
+        CHECK(tyn_shadow_fit_scene(&light, &camera, n & 1 ? &depth : NULL, &mesh, n & 2 ? 1 : 0) == TYN_OK);
+        for (int i = 0; i < 2 && n == 2; i++) {
+            float y = i ? 3.9f : 0.05f, W = m[13] * y + m[15];
+            float u = (m[1] * y + m[3]) / W, v = (m[5] * y + m[7]) / W;
+            z[i] = (m[9] * y + m[11]) / W;
+            CHECK(W > 0 && u > 0 && u < 1 && v > 0 && v < 1);
+            if (i)
+                CHECK(z[1] > z[0]);
+        }
+        for (int i = 0; i < 16; i++)
+            CHECK(isfinite(m[i]));
+    }
+}
+
+/* Where a cube's six faces meet there is no gap, and each face looks along its axis. */
+static void test_fit_cube(void)
+{
+    const float at[3] = {1, 2, 3}, bad[3] = {0, BIG_NAN, 0};
+    tyn_shadow faces[6], before[6];
+    TEST("tyn_shadow_fit_cube");
+    memset(faces, 0, sizeof faces);
+    memcpy(before, faces, sizeof faces);
+    CHECK(tyn_shadow_fit_cube(NULL, at, 5) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit_cube(faces, NULL, 5) == TYN_E_NULL);
+    CHECK(tyn_shadow_fit_cube(faces, bad, 5) == TYN_E_LIGHT);
+    CHECK(tyn_shadow_fit_cube(faces, at, 0) == TYN_E_LIGHT);
+    CHECK(tyn_shadow_fit_cube(faces, at, BIG_INF) == TYN_E_LIGHT);
+    CHECK(memcmp(before, faces, sizeof faces) == 0);
+    for (int size = 0; size <= 64; size += 64) {
+        for (int f = 0; f < 6; f++)
+            faces[f].size = size;
+        CHECK(tyn_shadow_fit_cube(faces, at, 50) == TYN_OK);
+        for (int n = 0; n < 2000; n++) {
+            float p[3];
+            int covered = 0, ahead = 0;
+            for (int k = 0; k < 3; k++)
+                p[k] = at[k] + test_random_float(-9, 9);
+            for (int f = 0; f < 6; f++) {
+                const float *m = faces[f].matrix;
+                float out[4];
+                for (int i = 0; i < 4; i++)
+                    out[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+                if (!(out[3] > 0))
+                    continue;
+                ahead += (p[f / 2] > at[f / 2]) == (f % 2 == 0);
+                covered += out[0] >= -1e-5f * out[3] && out[0] <= 1.00001f * out[3] && out[1] >= -1e-5f * out[3] &&
+                           out[1] <= 1.00001f * out[3];
+            }
+            CHECK(covered >= 1 && covered <= 3 && ahead == 3);
+        }
+    }
+}
+
 /* ---- configs and memory --------------------------------------------------------------------------------------------- */
 
 /* The macro's sum, which must be tyn_measure's. */
@@ -158,7 +256,8 @@ static size_t memory_of(const tyn_config *c)
 {
     size_t width = (size_t)c->width, height = (size_t)c->height, slices = (size_t)c->slices, samples = (size_t)c->samples;
     size_t shadow = (size_t)c->shadow_size, lights = (size_t)c->lights, workers = (size_t)c->workers;
-    return TYN_MEMORY(width, height, slices, samples, shadow, lights, workers);
+    size_t maps = (size_t)c->maps;
+    return TYN_MEMORY_FULL(width, height, slices, samples, shadow, lights, workers, maps, c->textured);
 }
 
 static void test_preset(void)
@@ -184,6 +283,8 @@ static void test_preset(void)
             CHECK(memory_of(&config) == bytes);
             config.lights = 3;
             config.workers = 5;
+            config.maps = 6;
+            config.textured = 1;
             CHECK(tyn_measure(&config, &bytes) == TYN_OK && memory_of(&config) == bytes);
         }
     }
@@ -208,6 +309,7 @@ static void test_ranges(void)
                   {offsetof(tyn_config, steps), {-1, 4097, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, method), {-1, 4, 1000, INT32_MIN}},
                   {offsetof(tyn_config, rays), {-1, 2, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, maps), {-1, TYN_MAX_MAPS + 1, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, lights), {-1, TYN_MAX_LIGHTS + 1, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, workers), {-1, TYN_MAX_WORKERS + 1, INT32_MAX, INT32_MIN}}};
     static const float breaks[] = {-0.1f, 1.01f, BIG_NAN, BIG_INF};
@@ -235,6 +337,9 @@ static void test_ranges(void)
     for (int i = 0; i < 4; i++) {
         config = good;
         config.break_threshold = breaks[i];
+        CHECK(tyn_measure(&config, &bytes) == TYN_E_CONFIG && bytes == 77);
+        config = good;
+        config.tolerance = breaks[i];
         CHECK(tyn_measure(&config, &bytes) == TYN_E_CONFIG && bytes == 77);
     }
     CHECK(tyn_measure(NULL, &bytes) == TYN_E_NULL && bytes == 77);
@@ -380,6 +485,8 @@ void test_api(void)
     test_camera();
     test_air();
     test_fit();
+    test_fit_scene();
+    test_fit_cube();
     test_preset();
     test_ranges();
     test_encode();

@@ -23,6 +23,7 @@ static const struct {
     {"sun-parallel-steps", "sun parallel to the picture", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, TYN_PRESET_BALANCED, 0},
     {"lamp-in-view", "lamp in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
     {"lamp-left-subsample", "lamp off the left", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
+    {"bulb-in-view", "bulb in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
     {"lamp-above-reference", "lamp above", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_REFERENCE, 0},
 };
 enum { PICTURES = (int)(sizeof pictures / sizeof *pictures) };
@@ -42,6 +43,7 @@ static rig *render(int i, golden *out)
     config.method = pictures[i].method;
     config.rays = pictures[i].rays;
     config.shadow_size = 256;
+    config.maps = rig_maps(r);
     frame.scatter.pixels = scatter;
     frame.display.dither = pictures[i].dither;
     CHECK(rig_render(r, &config, &frame) == TYN_OK);

@@ -68,7 +68,7 @@ static tyn_status spoil(spoiled *s, int n)
         CASE(31, TYN_E_LIGHT, s->light[0].direction[1] = (float)NAN)
         CASE(32, TYN_E_LIGHT, s->light[0].colour[2] = -1)
         CASE(33, TYN_E_LIGHT, s->light[0].colour[0] = (float)INFINITY)
-        CASE(34, TYN_E_LIGHT, s->light[0].kind = (tyn_light_kind)2)
+        CASE(34, TYN_E_LIGHT, s->light[0].kind = (tyn_light_kind)3)
         CASE(35, TYN_E_LIGHT, s->light[1].angle = 0)
         CASE(36, TYN_E_LIGHT, s->light[1].angle = 2.9671f)
         CASE(37, TYN_E_LIGHT, s->light[1].position[2] = (float)NAN)
@@ -96,6 +96,11 @@ static tyn_status spoil(spoiled *s, int n)
         CASE(59, TYN_E_IMAGE, f->depth.width = TYN_MAX_SIZE + 1)
         CASE(60, TYN_E_IMAGE, f->depth.format = (tyn_format)-1)
         CASE(61, TYN_E_DISPLAY, f->debug = (tyn_debug)99)
+        CASE(62, TYN_E_NULL, s->light[0].more_count = 1)
+        CASE(63, TYN_E_LIMIT, s->light[0].more = &s->light[1].shadow; s->light[0].more_count = -1)
+        CASE(64, TYN_E_LIMIT, s->light[0].more = &s->light[1].shadow; s->light[0].more_count = 2)
+        CASE(65, TYN_E_LIGHT, s->light[0].outside = (tyn_outside)3)
+        CASE(66, TYN_E_LIGHT, s->light[1].kind = TYN_LIGHT_POINT; s->light[1].position[0] = (float)NAN)
 #undef CASE
     default:
         return TYN_OK;
@@ -112,6 +117,7 @@ static void test_statuses(void)
     tyn_status want = TYN_E_NULL;
     TEST("tyn_render: every status, and nothing written with it");
     config.lights = 2;
+    config.maps = 2;
     config.slices = 32;
     context = rig_context(&config);
     memset(&stats, 0x5a, sizeof stats);
@@ -145,7 +151,7 @@ static void test_statuses(void)
         if (want != TYN_OK) {
             CHECK(guard_untouched(&target) && guard_untouched(&scatter) && memcmp(&stats, &before, sizeof stats) == 0);
         } else {
-            CHECK(n == 62 && guard_intact(&target) && !guard_untouched(&target) && guard_intact(&scatter));
+            CHECK(n == 67 && guard_intact(&target) && !guard_untouched(&target) && guard_intact(&scatter));
         }
         guard_reset(&target);
         guard_reset(&scatter);
@@ -420,6 +426,84 @@ static void test_odd_matrix(void)
 
 /* ---- debug views ---------------------------------------------------------------------------------------------------- */
 
+/* The counts are what they say. */
+static void test_stats(void)
+{
+    enum { W = 48, H = 36 };
+    rig *r = rig_stock("sun ahead", W, H, 128);
+    TEST("tyn_render: the statistics");
+    for (int way = 0; way < RIG_WAYS; way++) {
+        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_frame frame = rig_frame(r);
+        const tyn_stats *s = &r->stats;
+        size_t bytes;
+        CHECK(tyn_measure(&config, &bytes) == TYN_OK);
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK(s->pixels == W * H && s->memory == bytes);
+        CHECK_NEAR(s->rays_percent, 100.0 * (double)(s->rays + s->rejected) / (W * H), 1e-4);
+        CHECK(s->rejected >= 0 && s->rejected <= W * H && s->walks >= 0 && s->walks <= s->rays && s->breaks <= s->samples);
+        if (config.method == TYN_METHOD_EPIPOLAR)
+            CHECK(s->slices > 8 && s->slices <= W + H && s->samples >= s->rays && s->breaks > 0);
+        else
+            CHECK(s->slices == 0 && s->breaks == 0);
+        if (config.method == TYN_METHOD_MARCH)
+            CHECK(s->rays == W * H && s->rejected == 0);
+        if (config.method == TYN_METHOD_NONE)
+            CHECK(s->rays == 0 && s->samples == 0 && s->rejected == 0);
+    }
+    rig_free(r);
+}
+
+/* A map given as two, the right half of the picture's world in one and all in the other, is as the one: cascades change nothing
+ * but the texels. And what lies outside of all maps is lit or dark as asked. */
+static void test_maps(void)
+{
+    enum { W = 48, H = 36, COUNT = 3 * W * H };
+    rig *r = rig_stock("sun off the left", W, H, 256);
+    static float one[COUNT], none[COUNT];
+    TEST("tyn_render: cascades, and what is outside of the maps");
+    for (int way = 0; way < RIG_WAYS - 1; way++) {
+        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_frame frame = rig_frame(r);
+        tyn_light light = r->light[0];
+        tyn_shadow coarse = light.shadow;
+        double lit = 0, dark = 0;
+        config.steps = 400;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        memcpy(one, r->scatter, sizeof one);
+        config.maps = 2;
+        frame.lights = &light;
+        light.more = &coarse;
+        light.more_count = 1;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK_NEAR(rig_l1(r->scatter, one, COUNT), 0, 1e-6);
+        /* the first map pushed aside: nothing is covered by it, the second has all */
+        light.shadow.matrix[3] += 50 * light.shadow.matrix[15];
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK_NEAR(rig_l1(r->scatter, one, COUNT), 0, 1e-6);
+        /* alone, it leaves all to `outside` */
+        light.more_count = 0;
+        light.outside = TYN_OUTSIDE_DARK;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        for (int i = 0; i < COUNT; i++)
+            dark += (double)r->scatter[i];
+        CHECK(dark == 0);
+        light.outside = TYN_OUTSIDE_LIT;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        memcpy(none, r->scatter, sizeof none);
+        light.outside = TYN_OUTSIDE_DEFAULT;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK(memcmp(none, r->scatter, sizeof none) == 0);
+        light.shadow.depth = NULL;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK_NEAR(rig_l1(none, r->scatter, COUNT), 0, 1e-3);
+        for (int i = 0; i < COUNT; i++)
+            lit += (double)(r->scatter[i] - one[i]);
+        CHECK(lit > 0);
+    }
+    rig_free(r);
+}
+
 /* Each debug view is drawn, differs from the picture, and leaves L_scat alone. */
 static void test_debug(void)
 {
@@ -451,5 +535,7 @@ void test_render(void)
     test_unshadowed();
     test_odd_depth();
     test_odd_matrix();
+    test_stats();
+    test_maps();
     test_debug();
 }
