@@ -179,34 +179,34 @@ static void hermite(const tyni_integral *it, float s, float *out)
     }
 }
 
-static float path_psi(const tyni_path *p, float t)
+float tyni_integral_variable(const tyni_integral *it, float t)
 {
-    return tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h);
+    const tyni_path *p = &it->path;
+    t = tyni_clampf(t, it->t0, it->t1);
+    return it->local ? tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h) : t;
+}
+
+float tyni_integral_t(const tyni_integral *it, float variable)
+{
+    return it->local ? path_t(&it->path, variable) : variable;
+}
+
+void tyni_integral_at_variable(const tyni_integral *it, float x, float *out)
+{
+    if (it->local) {
+        hermite(it, it->step > 0.0f ? tyni_clampf(x / it->step, 0.0f, (float)(it->knots - 1)) : 0.0f, out);
+        return;
+    }
+    for (int32_t i = 0; i < it->count; i++) {
+        out[i] = x * tyni_num_fog(it->sigma[i] * x);
+        if (it->t0 > 0.0f)
+            out[i] -= it->t0 * tyni_num_fog(it->sigma[i] * it->t0);
+    }
 }
 
 void tyni_integral_at(const tyni_integral *it, float t, float *out)
 {
-    t = tyni_clampf(t, it->t0, it->t1);
-    if (!it->local) {
-        for (int32_t i = 0; i < it->count; i++) {
-            float d = it->sigma[i];
-            out[i] = t * tyni_num_fog(d * t);
-            if (it->t0 > 0.0f)
-                out[i] -= it->t0 * tyni_num_fog(d * it->t0);
-        }
-        return;
-    }
-    hermite(it, it->step > 0.0f ? tyni_clampf(path_psi(&it->path, t) / it->step, 0.0f, (float)(it->knots - 1)) : 0.0f, out);
-}
-
-float tyni_integral_between(const tyni_integral *it, float ta, float tb, float f)
-{
-    float a, b;
-    if (!it->local)
-        return ta + (tb - ta) * f;
-    a = path_psi(&it->path, ta);
-    b = path_psi(&it->path, tb);
-    return path_t(&it->path, a + (b - a) * f);
+    tyni_integral_at_variable(it, tyni_integral_variable(it, t), out);
 }
 
 void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3])

@@ -68,11 +68,14 @@ typedef struct tyni_integral {
 void tyni_integral_begin(tyni_integral *integral, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0,
                          float t1, const int32_t *channels, int32_t count);
 
-/* Parameter of equal angle (local light) or length: t at the part f, 0 .. 1, of the way from ta to tb. */
-float tyni_integral_between(const tyni_integral *integral, float ta, float tb, float f);
-
 /* out[n]: from t0 to t. Never falls with t beyond rounding. */
 void tyni_integral_at(const tyni_integral *integral, float t, float *out);
+
+/* The same by the variable in which the integrand is smooth: psi for a local light, else t itself. For those who take many
+ * steps. */
+float tyni_integral_variable(const tyni_integral *integral, float t);
+float tyni_integral_t(const tyni_integral *integral, float variable);
+void tyni_integral_at_variable(const tyni_integral *integral, float variable, float *out);
 
 /* A cheap stand-in for the whole integral that is exact for a directional light and smooth over the screen for a spot: radiance
  * is divided by it where it is sampled and multiplied by it at each pixel, so that only the smooth ratio is interpolated. All

@@ -58,13 +58,12 @@ static int32_t colour_parts(const meter *m, float ta, float tb)
 static void meter_coloured(meter *m, float ta, float tb)
 {
     int32_t parts = colour_parts(m, ta, tb);
-    float last[3], next[3], rgb[3];
+    float last[3], next[3], rgb[3], x = tyni_integral_variable(m->integral, ta);
+    float step = (tyni_integral_variable(m->integral, tb) - x) / (float)parts;
     tyni_integral_at(m->integral, ta, last);
     for (int32_t k = 0; k < parts; k++) {
-        float middle = tyni_integral_between(m->integral, ta, tb, ((float)k + 0.5f) / (float)parts);
-        float end = k + 1 < parts ? tyni_integral_between(m->integral, ta, tb, (float)(k + 1) / (float)parts) : tb;
-        tyni_integral_at(m->integral, end, next);
-        tyni_view_colour(m->lamp, tyni_vec_scale(m->v, middle), rgb);
+        tyni_integral_at_variable(m->integral, x + (float)(k + 1) * step, next);
+        tyni_view_colour(m->lamp, tyni_vec_scale(m->v, tyni_integral_t(m->integral, x + ((float)k + 0.5f) * step)), rgb);
         for (int32_t i = 0; i < m->integral->count; i++)
             m->sum[i] += (next[i] - last[i]) * rgb[m->integral->channels[i]];
         memcpy(last, next, sizeof last);

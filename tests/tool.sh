@@ -173,8 +173,7 @@ sed 's/^box.*/box min 0 0 0 max 1 1 nan albedo 1 1 1/' good.scene >bad.scene
 expect 'a bad scene' 1 "$tyndall" render bad.scene -o o/a.png --depth o/d.pfm
 says 'file, line and token' "bad.scene:9: 'nan'"
 { cat good.scene; echo 'light point position 0 1 0 intensity 1 1 1'; } >point.scene
-expect 'a point light' 1 "$tyndall" render point.scene -o o/a.png
-says 'point lights are named' 'point.scene:10: point lights are not supported yet'
+expect 'a point light' 0 "$tyndall" render point.scene -o point.png --shadow-size 128
 expect 'no such folder' 1 "$tyndall" render good.scene -o o/no/a.png
 says 'the output is named' o/no/a.png
 expect 'one of two outputs fails' 1 "$tyndall" render good.scene -o o/a.png --depth o/no/d.pfm

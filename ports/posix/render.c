@@ -2,10 +2,13 @@
 #include "render.h"
 #include "progress.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define DEFAULT_SHADOW 2048
+#define FACES 6 /* of a point light's cube */
 
 typedef struct work {
     const scene *s;
@@ -18,7 +21,8 @@ typedef struct work {
     tyn_config config;
     tyn_camera camera;
     tyn_light lights[TYN_MAX_LIGHTS];
-    float *maps[TYN_MAX_LIGHTS];
+    tyn_shadow faces[TYN_MAX_LIGHTS][FACES];
+    float *maps[TYN_MAX_LIGHTS][FACES];
     tyn_raster *raster;
     void *raster_block, *shafts_block;
 } work;
@@ -26,19 +30,6 @@ typedef struct work {
 static int fail(const work *w, int32_t line, const char *what, tyn_status status)
 {
     return error_set(w->error, w->name, line, NULL, 0, "%s: %s", what, tyn_status_name(status));
-}
-
-/* The scene format is ahead of the library: what is not drawn yet is an error here, and nowhere else. */
-static int check_supported(const work *w)
-{
-    for (int32_t i = 0; i < w->s->light_count; i++) {
-        const scene_light *l = &w->s->lights[i];
-        if (l->point)
-            return error_set(w->error, w->name, l->line, NULL, 0, "point lights are not supported yet");
-        if (l->texture)
-            return error_set(w->error, w->name, l->line, NULL, 0, "lights with a texture are not supported yet");
-    }
-    return 0;
 }
 
 /* What aligned_alloc would do. *block is to be freed. */
@@ -85,6 +76,10 @@ static int make_config(work *w)
         c->shadow_size = r->shadow_size;
     if (c->shadow_size == 0)
         c->shadow_size = DEFAULT_SHADOW;
+    for (int32_t i = 0; i < w->s->light_count; i++) {
+        c->maps = w->s->lights[i].point ? FACES : c->maps;
+        c->textured = w->s->lights[i].texture ? 1 : c->textured;
+    }
     c->lights = w->s->light_count > 0 ? w->s->light_count : 1;
     c->workers = pool_executor(w->threads)->workers;
     w->pixels = (size_t)width * (size_t)height;
@@ -137,33 +132,84 @@ static int draw_surface(work *w, const char *stage, void *colour, int32_t light_
     return status == TYN_OK ? 0 : fail(w, 0, stage, status);
 }
 
-/* After the depth is known: a map that covers just what is seen makes the best of its texels. */
-static int draw_shadows(work *w)
+/* What the light is, but for its shadow maps. */
+static void set_light(work *w, int32_t i)
 {
+    const scene_light *from = &w->s->lights[i];
+    tyn_light *l = &w->lights[i];
+    *l = from->light;
+    if (from->point) {
+        l->kind = TYN_LIGHT_POINT;
+        l->shadow = w->faces[i][0];
+        l->more = &w->faces[i][1];
+        l->more_count = FACES - 1;
+    } else if (from->texture) {
+        l->textures = from->texture;
+        l->texture_count = 1;
+        memcpy(l->up, from->texture_up, sizeof l->up);
+        memcpy(l->extent, from->extent, sizeof l->extent);
+    }
+}
+
+/* The farthest corner of the scene from a point. */
+static float reach_from(const scene *s, const float position[3], float otherwise)
+{
+    float min[3], max[3], sum = 0.0f;
+    if (!scene_bounds(s, min, max))
+        return otherwise;
+    for (int i = 0; i < 3; i++) {
+        float a = fabsf(min[i] - position[i]), b = fabsf(max[i] - position[i]), most = a > b ? a : b;
+        sum += most * most;
+    }
+    return sqrtf(sum) > 0.0f && sqrtf(sum) <= FLT_MAX ? sqrtf(sum) : otherwise;
+}
+
+/* After the depth is known: a map that covers just what is seen makes the best of its texels. */
+static int draw_shadow(work *w, int32_t i, const tyn_image *depth)
+{
+    const scene *s = w->s;
+    tyn_light *l = &w->lights[i];
     size_t texels = (size_t)w->config.shadow_size * (size_t)w->config.shadow_size;
-    tyn_image depth = image_of(w, w->out->depth, TYN_DEPTH_F32);
-    uint64_t start = clock_now(NULL);
-    progress_stage("shadow maps");
-    for (int32_t i = 0; i < w->s->light_count; i++) {
-        tyn_light *l = &w->lights[i];
-        tyn_status status;
-        *l = w->s->lights[i].light;
-        l->shadow.size = w->config.shadow_size;
-        status = tyn_shadow_fit_scene(l, &w->camera, &depth, w->s->meshes, w->s->mesh_count);
-        if (status != TYN_OK)
-            return fail(w, w->s->lights[i].line, "light", status);
-        w->maps[i] = texels < SIZE_MAX / sizeof(float) ? malloc(texels * sizeof(float)) : NULL;
-        if (!w->maps[i])
+    int32_t faces = s->lights[i].point ? FACES : 1;
+    tyn_status status;
+    for (int32_t k = 0; k < faces; k++)
+        w->faces[i][k].size = w->config.shadow_size;
+    set_light(w, i);
+    l->shadow.size = w->config.shadow_size;
+    if (s->lights[i].point)
+        status = tyn_shadow_fit_cube(w->faces[i], l->position, reach_from(s, l->position, s->camera.far_depth));
+    else
+        status = tyn_shadow_fit_scene(l, &w->camera, depth, s->meshes, s->mesh_count);
+    if (status != TYN_OK)
+        return fail(w, s->lights[i].line, "light", status);
+    if (faces == 1)
+        w->faces[i][0] = l->shadow;
+    for (int32_t k = 0; k < faces; k++) {
+        float **map = &w->maps[i][k];
+        *map = texels < SIZE_MAX / sizeof(float) ? malloc(texels * sizeof(float)) : NULL;
+        if (!*map)
             return error_memory(w->error);
         w->out->shadow_bytes += texels * sizeof(float);
-        status = tyn_raster_shadow(w->raster, &l->shadow, w->maps[i], w->s->meshes, w->s->mesh_count, pool_executor(w->threads),
-                                   NULL, NULL, NULL);
+        status = tyn_raster_shadow(w->raster, &w->faces[i][k], *map, s->meshes, s->mesh_count, pool_executor(w->threads), NULL,
+                                   NULL, NULL);
         if (status != TYN_OK)
-            return fail(w, w->s->lights[i].line, "shadow map", status);
-        l->shadow.depth = w->maps[i];
+            return fail(w, s->lights[i].line, "shadow map", status);
+        w->faces[i][k].depth = *map;
     }
-    w->out->times.shadow_ns = clock_now(NULL) - start;
+    l->shadow = w->faces[i][0];
     return 0;
+}
+
+static int draw_shadows(work *w)
+{
+    tyn_image depth = image_of(w, w->out->depth, TYN_DEPTH_F32);
+    uint64_t start = clock_now(NULL);
+    int status = 0;
+    progress_stage("shadow maps");
+    for (int32_t i = 0; i < w->s->light_count && !status; i++)
+        status = draw_shadow(w, i, &depth);
+    w->out->times.shadow_ns = clock_now(NULL) - start;
+    return status;
 }
 
 static int draw_shafts(work *w)
@@ -250,11 +296,12 @@ int render_scene(const scene *s, const char *name, const render_settings *settin
     w.out = result;
     w.error = error;
     pool_watch(threads, progress_jobs);
-    status = check_supported(&w) != 0 || make_config(&w) != 0 || allocate(&w) != 0 || make_raster(&w) != 0 ||
-             draw_surface(&w, "depth", NULL, 0) != 0 || draw_shadows(&w) != 0 ||
-             draw_surface(&w, "surfaces", result->surface, s->light_count) != 0 || draw_shafts(&w) != 0;
+    status = make_config(&w) != 0 || allocate(&w) != 0 || make_raster(&w) != 0 || draw_surface(&w, "depth", NULL, 0) != 0 ||
+             draw_shadows(&w) != 0 || draw_surface(&w, "surfaces", result->surface, s->light_count) != 0 ||
+             draw_shafts(&w) != 0;
     for (int i = 0; i < TYN_MAX_LIGHTS; i++)
-        free(w.maps[i]);
+        for (int k = 0; k < FACES; k++)
+            free(w.maps[i][k]);
     free(w.raster_block);
     free(w.shafts_block);
     if (result->surface == result->radiance)
