@@ -239,7 +239,7 @@ static void test_shadow_door(void)
     for (int i = 0; i < 16; i++)
         map[i] = before[i] = 7;
     for (int i = 0; i < 12; i++) {
-        tyn_shadow s = {NULL, 4, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+        tyn_shadow s = {.size = 4, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
         tyn_executor crew = {NULL, NULL, 1};
         tyn_mesh spoiled = mesh;
         tyn_status want = i == 11   ? TYN_E_ALIGN
@@ -267,7 +267,7 @@ static void test_shadow_door(void)
         CHECK(memcmp(map, before, sizeof map) == 0);
     }
     {
-        const tyn_shadow s = {NULL, 4, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+        const tyn_shadow s = {.size = 4, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
         CHECK(tyn_raster_shadow(NULL, &s, map, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_E_NULL);
         CHECK(tyn_raster_shadow(e.raster, NULL, map, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_E_NULL);
         CHECK(tyn_raster_shadow(e.raster, &s, NULL, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_E_NULL);

@@ -174,7 +174,7 @@ static void test_masks(void)
     for (int round = 0; round < 40; round++) {
         const float u0 = test_random_float(-2, 2), v0 = test_random_float(-2, 2);
         quad q;
-        tyn_shadow shadow = {NULL, SIZE, {0}};
+        tyn_shadow shadow = {.size = SIZE};
         lean(&q, (double)test_random_float(2, 9));
         quad_map(&q, u0, 1.5f, v0, -1.25f);
         q.mesh.material.mask = &mask;
@@ -242,7 +242,7 @@ static void add_exact(const tyn_light *l, const double point[3], const double n[
 {
     double to[3], r = 1, cosine = 0;
     for (int c = 0; c < 3; c++)
-        to[c] = l->kind == TYN_LIGHT_SPOT ? (double)l->position[c] - point[c] : -(double)l->direction[c];
+        to[c] = l->kind == TYN_LIGHT_DIRECTIONAL ? -(double)l->direction[c] : (double)l->position[c] - point[c];
     r = sqrt(easel_dot(to, to));
     for (int c = 0; c < 3; c++)
         cosine -= to[c] * (double)l->direction[c] / r;
@@ -253,7 +253,7 @@ static void add_exact(const tyn_light *l, const double point[3], const double n[
             return;
     }
     for (int c = 0; c < 3; c++) {
-        const double dim = l->kind == TYN_LIGHT_SPOT ? exp(-sigma[c] * r) / (r * r) : 1;
+        const double dim = l->kind == TYN_LIGHT_DIRECTIONAL ? 1 : exp(-sigma[c] * r) / (r * r);
         const double facing = easel_dot(n, to) / r;
         sum[c] += (double)l->colour[c] * dim * (facing > 0 ? facing : 0);
     }
@@ -264,7 +264,7 @@ static void test_lambert(void)
     easel e = easel_new(40, 32, 64, 1, 0);
     double worst = 0;
     int seen = 0, lit = 0, dark = 0;
-    TEST("raster: Lambert, two-sided, suns and spots in haze");
+    TEST("raster: Lambert, two-sided, suns, spots and points in haze");
     for (int round = 0; round < 80; round++) {
         tyn_light light[3];
         tyn_medium medium[2];
@@ -273,7 +273,8 @@ static void test_lambert(void)
         lean(&q, (double)test_random_float(1, 9));
         memset(medium, 0, sizeof medium);
         for (int i = 0; i < 3; i++)
-            light[i] = random_light(i ? TYN_LIGHT_SPOT : TYN_LIGHT_DIRECTIONAL);
+            light[i] = random_light((tyn_light_kind)i);
+        light[2].position[2] = test_random_float(-20, 2); /* before the surface or behind it */
         for (int c = 0; c < 3; c++) {
             medium[0].scatter[c] = test_random_float(0, 0.1f);
             medium[1].absorb[c] = test_random_float(0, 0.1f);
@@ -310,7 +311,7 @@ static void test_lambert(void)
                 }
             }
     }
-    CHECK(seen > 20000 && lit > 2000 && dark > 1000);
+    CHECK(seen > 20000 && lit > 2000 && dark > 50);
     CHECK_NEAR(worst, 0, 2e-4); /* spots a hand before the surface among them */
     easel_free(&e);
 }
@@ -452,7 +453,8 @@ static void test_outside(void)
     easel e = easel_new(8, 8, 64, 1, 0);
     quad q;
     tyn_light sun = {.direction = {0, 0, -1}, .colour = {1, 1, 1}};
-    tyn_light spot = {.kind = TYN_LIGHT_SPOT, .position = {0, 0, 0}, .direction = {0, 0, -1}, .colour = {1, 1, 1}, .angle = 2.5f};
+    tyn_light spot = {
+        .kind = TYN_LIGHT_SPOT, .position = {0, 0, 0}, .direction = {0, 0, -1}, .colour = {1, 1, 1}, .angle = 2.5f};
     const double nowhere[3] = {100, 100, 0}, here[3] = {0, 0, -4};
     TEST("raster: outside of the map a sun shines and a spot does not");
     lean(&q, 4);
@@ -480,6 +482,122 @@ static void test_outside(void)
     easel_free(&e);
 }
 
+/* A point light in a room, in a cube of six maps: the walls are lit all over, but behind a plate. */
+static void test_cube(void)
+{
+    enum { SIZE = 96, W = 64, H = 48 };
+    static float map[6][SIZE * SIZE];
+    easel e = easel_new(SIZE, SIZE, 64, 1, 0), view = easel_new(W, H, 64, 1, 0);
+    quad room[7];
+    tyn_mesh mesh[7];
+    int wrong = 0, lit = 0, dark = 0;
+    TEST("raster: a point light's cube of maps");
+    for (int side = 0; side < 6; side++) {
+        const int axis = side / 2;
+        memset(&room[side], 0, sizeof room[side]);
+        for (int c = 0; c < 3; c++)
+            room[side].p[c] = c == axis && side % 2 ? 5 : -5;
+        room[side].a[(axis + 1) % 3] = 10;
+        room[side].b[(axis + 2) % 3] = 10;
+        quad_set(&room[side]);
+        mesh[side] = room[side].mesh;
+    }
+    for (int round = 0; round < 30; round++) {
+        tyn_light l;
+        tyn_shadow face[6];
+        const double no_sigma[3] = {0, 0, 0};
+        quad *plate = &room[6];
+        memset(&l, 0, sizeof l);
+        memset(face, 0, sizeof face);
+        memset(plate, 0, sizeof *plate);
+        l.kind = TYN_LIGHT_POINT;
+        for (int c = 0; c < 3; c++) {
+            l.position[c] = test_random_float(-3, 3);
+            l.colour[c] = 10;
+        }
+        plate->a[0] = plate->b[1] = 1;
+        for (int c = 0; c < 3; c++)
+            plate->p[c] = (double)l.position[c] - (c == 2 ? 1 : 0.5);
+        quad_set(plate);
+        mesh[6] = plate->mesh;
+        for (int i = 0; i < 6; i++)
+            face[i].size = SIZE;
+        CHECK(tyn_shadow_fit_cube(face, l.position, 30) == TYN_OK);
+        for (int i = 0; i < 6; i++) {
+            CHECK(easel_shadow(&e, &face[i], map[i], mesh, 7) == TYN_OK);
+            face[i].depth = map[i];
+        }
+        l.shadow = face[0];
+        l.more = face + 1;
+        l.more_count = 5;
+        view.surface.lights = &l;
+        view.surface.light_count = 1;
+        CHECK(easel_draw(&view, mesh, 6) == TYN_OK); /* the plate is in the maps alone */
+        for (int side = 0; side < 6; side++)
+            for (int32_t y = 0; y < H; y++)
+                for (int32_t x = 0; x < W; x++) {
+                    double hit[3], s, t, n[3], sum[3] = {0, 0, 0}, edge, want, got, off, k;
+                    if (!quad_hit(&room[side], &view, x, y, hit, &s, &t))
+                        continue;
+                    quad_normal(&room[side], n);
+                    add_exact(&l, hit, n, no_sigma, sum, &edge);
+                    want = sum[1] * 0.5 / PI;
+                    got = (double)easel_colour(&view, x, y)[1];
+                    k = 1 / ((double)l.position[2] - hit[2]); /* where the way to the light meets the plate's plane */
+                    off = fmax(fabs(hit[0] - (double)l.position[0]), fabs(hit[1] - (double)l.position[1])) * k;
+                    if (k > 0 && k < 0.95 && off < 0.44) {
+                        dark++;
+                        wrong += got > 0;
+                    } else if (k < 0 || off > 0.56) {
+                        lit++;
+                        wrong += fabs(got / want - 1) > 1e-4;
+                    }
+                }
+    }
+    CHECK(lit > 20000 && dark > 1000);
+    CHECK_NEAR(wrong, 0, 0);
+    easel_free(&e);
+    easel_free(&view);
+}
+
+/* The first map that covers a point counts; `outside` says what holds where none does. */
+static void test_cascades(void)
+{
+    static float full[16], empty[16];
+    static const tyn_outside outside[3] = {TYN_OUTSIDE_DEFAULT, TYN_OUTSIDE_LIT, TYN_OUTSIDE_DARK};
+    easel e = easel_new(33, 33, 64, 1, 0);
+    const double middle[3] = {0, 0, -4};
+    quad wall;
+    TEST("raster: the first map that covers a place counts");
+    memset(&wall, 0, sizeof wall);
+    wall.p[0] = wall.p[1] = -9;
+    wall.p[2] = -4;
+    wall.a[0] = wall.b[1] = 18;
+    quad_set(&wall);
+    for (int i = 0; i < 16; i++)
+        full[i] = 1.0f;
+    for (int i = 0; i < 3; i++) {
+        tyn_light sun = {.direction = {0, 0, -1}, .colour = {1, 1, 1}}, wide = sun;
+        fit(&sun, middle, 0.4);
+        fit(&wide, middle, 1.2);
+        sun.shadow.size = wide.shadow.size = 4;
+        sun.shadow.depth = full;
+        wide.shadow.depth = empty;
+        sun.more = &wide.shadow;
+        sun.more_count = 1;
+        sun.outside = outside[i];
+        e.surface.lights = &sun;
+        e.surface.light_count = 1;
+        CHECK(easel_draw(&e, &wall.mesh, 1) == TYN_OK);
+        CHECK(easel_colour(&e, 16, 16)[0] == 0);                                      /* in the first, full one */
+        CHECK(easel_colour(&e, 16, 21)[0] > 0);                                       /* in the second, empty one */
+        CHECK((easel_colour(&e, 16, 31)[0] > 0) == (outside[i] != TYN_OUTSIDE_DARK)); /* in neither */
+        wide.shadow.depth = full;
+        CHECK(easel_draw(&e, &wall.mesh, 1) == TYN_OK && easel_colour(&e, 16, 21)[0] == 0);
+    }
+    easel_free(&e);
+}
+
 void test_raster_light(void)
 {
     test_textures();
@@ -488,4 +606,6 @@ void test_raster_light(void)
     test_flat(TYN_LIGHT_DIRECTIONAL);
     test_flat(TYN_LIGHT_SPOT);
     test_outside();
+    test_cube();
+    test_cascades();
 }

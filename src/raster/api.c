@@ -13,7 +13,8 @@ typedef char size_of_piece[sizeof(tyni_raster_piece) == 128 ? 1 : -1];
 typedef char size_of_chunk[sizeof(tyni_raster_chunk) == 24 ? 1 : -1];
 typedef char size_of_tally[sizeof(tyni_raster_tally) == 64 ? 1 : -1];
 typedef char size_of_count[sizeof(tyni_jobs_count) == 64 ? 1 : -1];
-typedef char size_of_lamp[sizeof(tyni_raster_lamp) <= 192 ? 1 : -1];
+typedef char size_of_lamp[sizeof(tyni_raster_lamp) <= 64 ? 1 : -1];
+typedef char size_of_map[sizeof(tyni_raster_map) == 64 ? 1 : -1];
 
 static tyn_status resolve(tyn_raster_config *out, const tyn_raster_config *config)
 {
@@ -38,7 +39,8 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
     tyni_raster_chunk *chunks = tyni_arena_take(arena, (batch + TYNI_RASTER_CHUNK - 1) / TYNI_RASTER_CHUNK, sizeof *chunks);
     tyni_raster_tally *tallies = tyni_arena_take(arena, workers, sizeof *tallies);
     tyni_jobs_count *counts = tyni_arena_take(arena, workers, sizeof *counts);
-    tyni_raster_lamp *lamps = tyni_arena_take(arena, TYN_MAX_LIGHTS, 192);
+    tyni_raster_lamp *lamps = tyni_arena_take(arena, TYN_MAX_LIGHTS, 64);
+    tyni_raster_map *maps = tyni_arena_take(arena, (size_t)TYN_MAX_LIGHTS * TYN_MAX_MAPS, sizeof *maps);
     if (raster) {
         raster->width = config->width;
         raster->height = config->height;
@@ -50,6 +52,7 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
         raster->tallies = tallies;
         raster->counts = counts;
         raster->lamps = lamps;
+        raster->maps = maps;
     }
     return raster;
 }
@@ -204,7 +207,8 @@ static tyn_status shade(const tyni_raster_pass *pass, const tyn_surface *surface
     shading.surface = surface;
     shading.lamps = pass->raster->lamps;
     for (int32_t i = 0; i < surface->light_count; i++)
-        tyni_raster_set_lamp(&pass->raster->lamps[i], &surface->lights[i], surface->camera.position, bias);
+        tyni_raster_set_lamp(&pass->raster->lamps[i], &pass->raster->maps[i * TYN_MAX_MAPS], &surface->lights[i],
+                             surface->camera.position, bias);
     tyni_medium_extinction(surface->media, surface->medium_count, shading.sigma);
     shading.hazy = shading.sigma[0] > 0.0f || shading.sigma[1] > 0.0f || shading.sigma[2] > 0.0f;
     return tyni_jobs_run(&pass->jobs, tyni_raster_shade, &shading,

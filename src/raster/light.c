@@ -14,133 +14,144 @@
  * shadows: 25 % less error than plain bilinear weights, 0 .. 11 % less than the nearest texel alone. */
 #define SHARPNESS 4.0f
 
-static tyni_vec3 row(const tyni_raster_lamp *lamp, int32_t i)
+static const tyn_shadow *shadow_of(const tyn_light *light, int32_t map)
 {
-    return tyni_vec_load(lamp->row[i]);
+    return map ? &light->more[map - 1] : &light->shadow;
+}
+
+static tyni_vec3 row(const tyn_shadow *shadow, int32_t i)
+{
+    return tyni_vec_load(shadow->matrix + 4 * i);
+}
+
+static float form(const tyn_shadow *shadow, int32_t i, tyni_vec3 point)
+{
+    return tyni_vec_dot(row(shadow, i), point) + shadow->matrix[4 * i + 3];
 }
 
 /* Parallel: u, v, z are linear in the point. `across`, `down` and `along` are the columns of the inverse. */
-static void set_parallel(tyni_raster_lamp *lamp, float texels)
+static void set_parallel(tyni_raster_map *map, const tyn_shadow *shadow, float texels)
 {
-    const float w = 1.0f / lamp->shift[3];
-    tyni_vec3 u, v, z;
-    float determinant;
-    for (int32_t i = 0; i < 3; i++) {
-        for (int32_t c = 0; c < 3; c++)
-            lamp->row[i][c] *= w;
-        lamp->shift[i] *= w;
-    }
-    lamp->shift[3] = 1.0f;
-    u = row(lamp, 0);
-    v = row(lamp, 1);
-    z = row(lamp, 2);
-    determinant = 1.0f / tyni_vec_dot(tyni_vec_cross(u, v), z);
-    lamp->across = tyni_vec_scale(tyni_vec_cross(v, z), determinant);
-    lamp->down = tyni_vec_scale(tyni_vec_cross(z, u), determinant);
-    lamp->along = tyni_vec_scale(tyni_vec_cross(u, v), determinant);
-    lamp->bias = texels / (tyni_minf(tyni_vec_length(u), tyni_vec_length(v)) * tyni_vec_length(lamp->along));
-    lamp->bias_z = 0.0f;
+    const float w = 1.0f / shadow->matrix[15];
+    const tyni_vec3 u = tyni_vec_scale(row(shadow, 0), w), v = tyni_vec_scale(row(shadow, 1), w),
+                    z = tyni_vec_scale(row(shadow, 2), w);
+    const float determinant = 1.0f / tyni_vec_dot(tyni_vec_cross(u, v), z);
+    map->across = tyni_vec_scale(tyni_vec_cross(v, z), determinant);
+    map->down = tyni_vec_scale(tyni_vec_cross(z, u), determinant);
+    map->along = tyni_vec_scale(tyni_vec_cross(u, v), determinant);
+    map->bias = texels / (tyni_minf(tyni_vec_length(u), tyni_vec_length(v)) * tyni_vec_length(map->along));
 }
 
 /* Perspective: with the apex a, point = a + w (u across + v down + axis). w falls out of the bias: a texel's width grows with
  * the distance as a step of z shrinks. */
-static void set_perspective(tyni_raster_lamp *lamp, float texels)
+static void set_perspective(tyni_raster_map *map, const tyn_shadow *shadow, float texels)
 {
-    const tyni_vec3 u = row(lamp, 0), v = row(lamp, 1), z = row(lamp, 2), w = row(lamp, 3);
+    const float *m = shadow->matrix;
+    const tyni_vec3 u = row(shadow, 0), v = row(shadow, 1), z = row(shadow, 2), w = row(shadow, 3);
     const float determinant = 1.0f / tyni_vec_dot(tyni_vec_cross(u, v), w), length = tyni_vec_length(w);
     const tyni_vec3 axis = tyni_vec_scale(w, 1.0f / length), third = tyni_vec_scale(tyni_vec_cross(u, v), determinant);
     const tyni_vec3 u_side = tyni_vec_mad(u, -tyni_vec_dot(u, axis), axis),
                     v_side = tyni_vec_mad(v, -tyni_vec_dot(v, axis), axis);
     const float texel = texels / tyni_minf(tyni_vec_length(u_side), tyni_vec_length(v_side));
-    lamp->across = tyni_vec_scale(tyni_vec_cross(v, w), determinant);
-    lamp->down = tyni_vec_scale(tyni_vec_cross(w, u), determinant);
-    lamp->along = tyni_vec_mad(tyni_vec_mad(tyni_vec_scale(lamp->across, -lamp->shift[0]), -lamp->shift[1], lamp->down),
-                               -lamp->shift[3], third);
-    lamp->slope_u = tyni_vec_dot(z, lamp->across);
-    lamp->slope_v = tyni_vec_dot(z, lamp->down);
-    lamp->apex = tyni_vec_dot(z, lamp->along) + lamp->shift[2];
-    lamp->bias = texel * tyni_vec_dot(z, axis);
-    lamp->bias_z = texel * length;
+    map->across = tyni_vec_scale(tyni_vec_cross(v, w), determinant);
+    map->down = tyni_vec_scale(tyni_vec_cross(w, u), determinant);
+    map->along = tyni_vec_mad(tyni_vec_mad(tyni_vec_scale(map->across, -m[3]), -m[7], map->down), -m[15], third);
+    map->slope_u = tyni_vec_dot(z, map->across);
+    map->slope_v = tyni_vec_dot(z, map->down);
+    map->apex = form(shadow, 2, map->along);
+    map->bias = texel * tyni_vec_dot(z, axis);
+    map->bias_z = texel * length;
 }
 
-void tyni_raster_set_lamp(tyni_raster_lamp *lamp, const tyn_light *light, const float origin[3], float bias)
+static void set_map(tyni_raster_map *map, const tyn_shadow *shadow, float bias)
 {
-    const tyni_vec3 direction = tyni_vec_normalise(tyni_vec_load(light->direction));
+    const float texels = bias / (float)shadow->size;
+    memset(map, 0, sizeof *map);
+    map->parallel = tyni_vec_dot(row(shadow, 3), row(shadow, 3)) == 0.0f;
+    if (map->parallel)
+        set_parallel(map, shadow, texels);
+    else
+        set_perspective(map, shadow, texels);
+}
+
+void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, const tyn_light *light, const float origin[3],
+                          float bias)
+{
     float sine;
     memset(lamp, 0, sizeof *lamp);
     lamp->light = light;
-    lamp->towards = tyni_vec_scale(direction, -1.0f);
-    if (light->kind == TYN_LIGHT_SPOT) {
+    lamp->maps = maps;
+    lamp->cosine = -1.0f;
+    if (light->kind != TYN_LIGHT_POINT)
+        lamp->towards = tyni_vec_scale(tyni_vec_normalise(tyni_vec_load(light->direction)), -1.0f);
+    if (light->kind != TYN_LIGHT_DIRECTIONAL)
         lamp->position = tyni_vec_sub(tyni_vec_load(light->position), tyni_vec_load(origin));
+    if (light->kind == TYN_LIGHT_SPOT)
         tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cosine);
-    }
-    if (!light->shadow.depth)
-        return;
-    for (int32_t i = 0; i < 4; i++) {
-        memcpy(lamp->row[i], light->shadow.matrix + 4 * i, sizeof lamp->row[i]);
-        lamp->shift[i] = tyni_vec_dot(row(lamp, i), tyni_vec_load(origin)) + light->shadow.matrix[4 * i + 3];
-    }
-    lamp->parallel = tyni_vec_dot(row(lamp, 3), row(lamp, 3)) == 0.0f;
-    if (lamp->parallel)
-        set_parallel(lamp, bias / (float)light->shadow.size);
-    else
-        set_perspective(lamp, bias / (float)light->shadow.size);
+    for (int32_t i = 0; i <= light->more_count; i++)
+        if (shadow_of(light, i)->depth) {
+            set_map(&maps[i], shadow_of(light, i), bias);
+            lamp->mapped = 1;
+        }
+    if (light->outside == TYN_OUTSIDE_LIT || (light->outside == TYN_OUTSIDE_DEFAULT && light->kind == TYN_LIGHT_DIRECTIONAL))
+        lamp->outside = 1.0f;
 }
 
-void tyni_raster_slope(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, float slope[2])
+static void set_slope(tyni_raster_slopes *slopes, int32_t i, const tyni_raster_map *map, float texel, tyni_vec3 point,
+                      tyni_vec3 normal)
 {
-    const float texel = 1.0f / (float)lamp->light->shadow.size;
-    float du = tyni_vec_dot(normal, lamp->across), dv = tyni_vec_dot(normal, lamp->down);
-    if (lamp->parallel) {
-        const float dz = -1.0f / tyni_vec_dot(normal, lamp->along);
+    float du = tyni_vec_dot(normal, map->across), dv = tyni_vec_dot(normal, map->down);
+    if (map->parallel) {
+        const float dz = -1.0f / tyni_vec_dot(normal, map->along);
         du *= dz;
         dv *= dz;
     } else {
-        const float dz = lamp->apex / tyni_vec_dot(normal, tyni_vec_sub(point, lamp->along));
-        du = du * dz + lamp->slope_u;
-        dv = dv * dz + lamp->slope_v;
+        const float dz = map->apex / tyni_vec_dot(normal, tyni_vec_sub(point, map->along));
+        du = du * dz + map->slope_u;
+        dv = dv * dz + map->slope_v;
     }
     /* A plane through the light has no slope; nothing of it is lit. */
-    slope[0] = tyni_finite(du) ? du * texel : 0.0f;
-    slope[1] = tyni_finite(dv) ? dv * texel : 0.0f;
+    slopes->u[i] = tyni_finite(du) ? du * texel : 0.0f;
+    slopes->v[i] = tyni_finite(dv) ? dv * texel : 0.0f;
+    slopes->ready |= 1u << i;
 }
 
-float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, const float slope[2])
+/* The four texels around (u, v), in texels from the first one's centre; slopes per texel. */
+static float compare(const tyn_shadow *shadow, float u, float v, float z, float slope_u, float slope_v)
 {
-    const tyn_shadow *map = &lamp->light->shadow;
-    const float outside = lamp->light->kind == TYN_LIGHT_SPOT ? 0.0f : 1.0f, size = (float)map->size;
-    float u = tyni_vec_dot(row(lamp, 0), point) + lamp->shift[0], v = tyni_vec_dot(row(lamp, 1), point) + lamp->shift[1];
-    float z = tyni_vec_dot(row(lamp, 2), point) + lamp->shift[2], share[4], sum = 0.0f, bias;
-    int32_t x[2], y[2];
-    if (!lamp->parallel) {
-        const float w = tyni_vec_dot(row(lamp, 3), point) + lamp->shift[3], inverse = 1.0f / w;
-        if (!(w > 0.0f))
-            return outside;
-        u *= inverse;
-        v *= inverse;
-        z *= inverse;
-    }
-    if (!(u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f))
-        return outside;
-    bias = tyni_absf(lamp->bias - lamp->bias_z * z);
-    u = u * size - 0.5f;
-    v = v * size - 0.5f;
-    x[0] = tyni_floori(u);
-    y[0] = tyni_floori(v);
-    share[1] = u - (float)x[0];
-    share[0] = 1.0f - share[1];
-    share[3] = v - (float)y[0];
-    share[2] = 1.0f - share[3];
-    x[1] = tyni_mini(x[0] + 1, map->size - 1);
-    y[1] = tyni_mini(y[0] + 1, map->size - 1);
-    x[0] = tyni_maxi(x[0], 0);
-    y[0] = tyni_maxi(y[0], 0);
+    const int32_t left = tyni_floori(u), top = tyni_floori(v), last = shadow->size - 1;
+    const int32_t x[2] = {tyni_maxi(left, 0), tyni_mini(left + 1, last)}, y[2] = {tyni_maxi(top, 0), tyni_mini(top + 1, last)};
+    const float s = u - (float)left, t = v - (float)top, share_x[2] = {1.0f - s, s}, share_y[2] = {1.0f - t, t};
+    float sum = 0.0f;
     for (int32_t j = 0; j < 2; j++)
         for (int32_t i = 0; i < 2; i++) {
-            const float blocker = tyni_minf(map->depth[(ptrdiff_t)y[j] * map->size + x[i]], 1.0f);
-            const float here = z + slope[0] * ((float)x[i] - u) + slope[1] * ((float)y[j] - v) + bias;
+            const float blocker = tyni_minf(shadow->depth[(ptrdiff_t)y[j] * shadow->size + x[i]], 1.0f);
+            const float here = z + slope_u * ((float)x[i] - u) + slope_v * ((float)y[j] - v);
             if (!(blocker > 0.0f && blocker > here))
-                sum += share[i] * share[2 + j];
+                sum += share_x[i] * share_y[j];
         }
     return tyni_clampf((sum - 0.5f) * SHARPNESS + 0.5f, 0.0f, 1.0f);
+}
+
+float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, tyni_raster_slopes *slopes)
+{
+    for (int32_t i = 0; i <= lamp->light->more_count; i++) {
+        const tyn_shadow *shadow = shadow_of(lamp->light, i);
+        const tyni_raster_map *map = &lamp->maps[i];
+        const float w = form(shadow, 3, point), size = (float)shadow->size;
+        float inverse, u, v, z;
+        if (!shadow->depth || !(w > 0.0f))
+            continue;
+        inverse = 1.0f / w;
+        u = form(shadow, 0, point) * inverse;
+        v = form(shadow, 1, point) * inverse;
+        z = form(shadow, 2, point) * inverse;
+        if (!(u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f))
+            continue;
+        if (!(slopes->ready >> i & 1u))
+            set_slope(slopes, i, map, 1.0f / size, point, normal);
+        z += tyni_absf(map->bias - map->bias_z * z);
+        return compare(shadow, u * size - 0.5f, v * size - 0.5f, z, slopes->u[i], slopes->v[i]);
+    }
+    return lamp->outside;
 }

@@ -102,20 +102,33 @@ typedef struct tyni_raster_pass {
     int64_t triangles, bad;
 } tyni_raster_pass;
 
-/* What shading needs of a light beyond tyn_light; see light.c. */
+/* What shading needs of a shadow map beyond tyn_shadow; see light.c. */
+typedef struct tyni_raster_map {
+    tyni_vec3 across, down; /* world displacement per u and per v (times w where the map is perspective) */
+    tyni_vec3 along;        /* parallel: displacement per z. perspective: the apex */
+    float slope_u, slope_v; /* perspective: z per u and v that any surface has */
+    float apex;             /* perspective: Z at the apex */
+    float bias, bias_z;     /* bias of the compare is |bias - bias_z * z| */
+    int32_t parallel;
+    uint32_t pad;
+} tyni_raster_map;
+
+/* The same of a light. */
 typedef struct tyni_raster_lamp {
     const tyn_light *light;
-    float row[4][3], shift[4]; /* the map's U, V, Z, W of a point relative to the camera */
-    tyni_vec3 across, down;    /* world displacement per u and per v (times w where the map is perspective) */
-    tyni_vec3 along;           /* parallel: displacement per z. perspective: the apex relative to the camera */
-    float slope_u, slope_v;    /* perspective: z per u and v that any surface has */
-    float apex;                /* perspective: Z at the apex */
-    float bias, bias_z;        /* bias of the compare is |bias - bias_z * z| */
-    tyni_vec3 towards;         /* directional: to the light */
-    tyni_vec3 position;        /* spot: relative to the camera */
-    float cosine;              /* of half the cone's angle */
-    int32_t parallel;
+    const tyni_raster_map *maps; /* of light->shadow, then of light->more */
+    tyni_vec3 towards;           /* to a directional light; against a spot's axis */
+    tyni_vec3 position;          /* spot, point: relative to the camera */
+    float cosine;                /* of half the cone's angle; -1 for a point */
+    int32_t mapped;              /* there is any map */
+    float outside;               /* what arrives where no map covers: 0 or 1 */
 } tyni_raster_lamp;
+
+/* How z changes over each map, in texels, on a triangle's plane; calculated when it is first looked up there. */
+typedef struct tyni_raster_slopes {
+    uint32_t ready; /* a bit for each map */
+    float u[TYN_MAX_MAPS], v[TYN_MAX_MAPS];
+} tyni_raster_slopes;
 
 struct tyn_raster {
     int32_t width, height, batch, workers;
@@ -125,6 +138,7 @@ struct tyn_raster {
     tyni_raster_tally *tallies; /* workers */
     tyni_jobs_count *counts;    /* workers */
     tyni_raster_lamp *lamps;    /* TYN_MAX_LIGHTS */
+    tyni_raster_map *maps;      /* TYN_MAX_LIGHTS * TYN_MAX_MAPS */
 };
 
 /* view.c */
@@ -177,14 +191,13 @@ static inline float tyni_raster_at(const tyni_raster_plane *p, int32_t x, int32_
     return p->dx * (float)(x - p->x0) + (p->dy * (float)(y - p->y0) + p->value);
 }
 
-/* light.c */
-void tyni_raster_set_lamp(tyni_raster_lamp *lamp, const tyn_light *light, const float origin[3], float bias);
+/* light.c. `maps` is room for TYN_MAX_MAPS. */
+void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, const tyn_light *light, const float origin[3],
+                          float bias);
 
-/* How z changes over the map on a plane through `point` (relative to the camera) with that normal. */
-void tyni_raster_slope(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, float slope[2]);
-
-/* The share of the light that arrives, 0 .. 1, shadows only. */
-float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, const float slope[2]);
+/* The share of the light that arrives at a point, 0 .. 1, shadows only, on a plane of that normal. The point is in the world.
+ */
+float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, tyni_raster_slopes *slopes);
 
 /* shade.c */
 typedef struct tyni_raster_shading {

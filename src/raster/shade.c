@@ -13,8 +13,8 @@ typedef struct face {
     const tyn_image *texture;
     float u, v; /* at the corner */
     tyni_vec3 grow_u, grow_v;
-    float facing[TYN_MAX_LIGHTS]; /* directional: n . l; spot: > 0 where it shines on the camera's side */
-    float slope[TYN_MAX_LIGHTS][2];
+    float facing[TYN_MAX_LIGHTS]; /* directional: n . l; others: > 0 where it shines on the camera's side */
+    tyni_raster_slopes slopes[TYN_MAX_LIGHTS];
 } face;
 
 static void set_texture(face *f, const tyn_mesh *mesh, const uint32_t *index, const tyni_raster_facet *facet, int flat)
@@ -34,10 +34,9 @@ static void set_lights(face *f, const tyni_raster_shading *s)
 {
     for (int32_t i = 0; i < s->surface->light_count; i++) {
         const tyni_raster_lamp *lamp = &s->lamps[i];
-        const int spot = lamp->light->kind == TYN_LIGHT_SPOT;
-        f->facing[i] = tyni_vec_dot(f->normal, spot ? tyni_vec_sub(lamp->position, f->corner) : lamp->towards);
-        if (f->facing[i] > 0.0f && lamp->light->shadow.depth)
-            tyni_raster_slope(lamp, f->corner, f->normal, f->slope[i]);
+        const int sun = lamp->light->kind == TYN_LIGHT_DIRECTIONAL;
+        f->facing[i] = tyni_vec_dot(f->normal, sun ? lamp->towards : tyni_vec_sub(lamp->position, f->corner));
+        f->slopes[i].ready = 0;
     }
 }
 
@@ -63,24 +62,26 @@ static void set_face(face *f, const tyni_raster_shading *s, uint32_t mesh_number
     set_lights(f, s);
 }
 
-/* The share of a light's colour that arrives, times n . l; per channel where the medium dims it. */
-static void add_light(const face *f, const tyni_raster_shading *s, int32_t i, tyni_vec3 point, float sum[3])
+/* What a light adds at a point. */
+static void add_light(face *f, const tyni_raster_shading *s, int32_t i, tyni_vec3 point, float sum[3])
 {
     const tyni_raster_lamp *lamp = &s->lamps[i];
     const tyn_light *light = lamp->light;
     float amount = f->facing[i], distance = 0.0f;
     if (!(amount > 0.0f))
         return;
-    if (light->kind == TYN_LIGHT_SPOT) {
+    if (light->kind != TYN_LIGHT_DIRECTIONAL) {
         const tyni_vec3 to = tyni_vec_sub(lamp->position, point);
         const float square = tyni_maxf(tyni_vec_dot(to, to), 1e-12f); /* the light touches the surface: finite all the same */
         distance = sqrtf(square);
-        if (tyni_vec_dot(to, lamp->towards) < lamp->cosine * distance)
+        if (light->kind == TYN_LIGHT_SPOT && tyni_vec_dot(to, lamp->towards) < lamp->cosine * distance)
             return;
         amount = tyni_maxf(tyni_vec_dot(f->normal, to), 0.0f) / (distance * square);
     }
-    if (light->shadow.depth)
-        amount *= tyni_raster_visible(lamp, point, f->slope[i]);
+    if (lamp->mapped) {
+        const tyni_vec3 world = tyni_vec_add(point, tyni_vec_load(s->surface->camera.position));
+        amount *= tyni_raster_visible(lamp, world, f->normal, &f->slopes[i]);
+    }
     if (!(amount > 0.0f))
         return;
     for (int32_t c = 0; c < 3; c++) {
@@ -89,7 +90,7 @@ static void add_light(const face *f, const tyni_raster_shading *s, int32_t i, ty
     }
 }
 
-static void shade_pixel(const face *f, const tyni_raster_shading *s, tyni_vec3 point, float rgb[3])
+static void shade_pixel(face *f, const tyni_raster_shading *s, tyni_vec3 point, float rgb[3])
 {
     float sum[3] = {s->surface->ambient[0], s->surface->ambient[1], s->surface->ambient[2]};
     for (int32_t i = 0; i < s->surface->light_count; i++)
