@@ -86,10 +86,12 @@ typedef enum tyn_format {
     TYN_RGBA8_SRGB = 2,   /* bytes R G B A, sRGB encoded; A is written as 255 */
     TYN_BGRA8_SRGB = 3,   /* bytes B G R A, else the same */
     TYN_RGB565_SRGB = 4,  /* uint16_t of the machine's byte order, red in the high 5 bits, sRGB encoded */
-    TYN_DEPTH_F32 = 5,    /* float, view-space depth in metres */
+    TYN_DEPTH_F32 = 5,    /* float, view-space depth in metres, or as its coding says */
     TYN_RGB8_LINEAR = 6,  /* bytes R G B, value / 255; textures */
     TYN_RGB16_LINEAR = 7, /* uint16_t R G B, value / 65535; textures */
-    TYN_MASK8 = 8         /* one byte; textures that cut holes: below 128 is a hole */
+    TYN_MASK8 = 8,        /* one byte; textures that cut holes: below 128 is a hole */
+    TYN_DEPTH_U16 = 9,    /* uint16_t of the machine's byte order; what it counts, its coding says */
+    TYN_DEPTH_U24 = 10    /* uint32_t: the low 24 bits; the high 8 (often a stencil) are ignored */
 } tyn_format;
 
 /* A picture in the caller's memory. pixels == NULL stands for "none" where an image is optional. */
@@ -346,15 +348,45 @@ typedef enum tyn_debug {
     TYN_DEBUG_OUTSIDE = 6   /* surface points outside the first light's shadow map, magenta */
 } tyn_debug;
 
+/* What a depth image holds. All zero: view-space depth in metres. */
+typedef enum tyn_depth_kind {
+    TYN_CODING_VIEW = 0, /* view-space depth, stored * scale */
+    TYN_CODING_PROJECTED =
+        1, /* what a projection leaves in a depth buffer, at_near .. at_far; integers are / 65535, / 16777215 */
+    TYN_CODING_DISTANCE = 2 /* distance along the pixel's ray, stored * scale */
+} tyn_depth_kind;
+
+/* Nothing is spoilt by odd values: each pixel's is decoded by itself.
+ *  - NaN and +infinity: sky, which is far, the end of the view ray. So is all that is beyond the camera's far_depth.
+ *  - `sky`: sky, compared with the stored value before anything else.
+ *  - Else zero and negative depths, and -infinity, are 0: nothing is seen through that pixel. Depth cameras that store 0 for
+ *    "unknown" have sky = 0.
+ *  - Projected values beyond at_near or at_far go on as the projection does; both infinities are sky. */
+typedef struct tyn_depth_coding {
+    tyn_depth_kind kind;
+    float scale; /* view, distance: metres of a stored 1, > 0; 0: 1. Integers count as they are: millimetres have 0.001 */
+    float at_near, at_far; /* projected: value stored at the near and the far plane, -1e6 .. 1e6: 0, 1 forward; 1, 0 reversed;
+                              -1, 1 OpenGL's before its viewport. Both 0: 0, 1 */
+    float
+        near_depth;  /* projected: the planes of that projection, 0 < near < far, which need not be the camera's. 0: they are */
+    float far_depth; /* HUGE_VALF or INFINITY: a projection without a far plane */
+    int32_t has_sky; /* not 0: `sky` is a mark */
+    float sky;       /* a stored value as it is: of an integer format the integer, such as 0 or 65535 */
+} tyn_depth_coding;
+
 /* One frame. Zero all of it, set what you need. */
 typedef struct tyn_frame {
     tyn_camera camera;
-    tyn_image depth;  /* required: TYN_DEPTH_F32. Values are clamped to 0 .. far; infinity and NaN mean far (sky) */
+    tyn_image
+        depth; /* required: TYN_DEPTH_F32, _U16 or _U24. Values are clamped to 0 .. far; infinity and NaN mean far (sky) */
+    tyn_depth_coding depth_coding; /* zeros: metres along `forward` */
     tyn_image colour; /* radiance of the surfaces without medium: TYN_RGB_F32, or an 8-bit or 565 format, decoded as sRGB with 1
                          = display white. May share pixels, stride and format with target (in place). pixels NULL: black.
                          In TYN_RGB_F32 negative values and NaN mean 0 */
     tyn_image target; /* the picture; pixels NULL: none wanted. Not TYN_DEPTH_F32, not a texture format */
     tyn_image scatter;       /* L_scat as TYN_RGB_F32, without exposure; pixels NULL: none wanted */
+    tyn_image transmittance; /* exp(-extinction s) as TYN_RGB_F32, 0 .. 1: with `scatter` all that is needed to put the medium
+                                over a picture later; pixels NULL: none wanted */
     const tyn_light *lights; /* light_count of them, 0 .. config.lights; NULL with 0 */
     int32_t light_count;
     const tyn_medium *media; /* medium_count of them, 0 .. TYN_MAX_MEDIA; NULL with 0 */

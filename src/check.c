@@ -31,9 +31,11 @@ static int32_t component_bytes(tyn_format format)
     switch (format) {
     case TYN_RGB_F32:
     case TYN_DEPTH_F32:
+    case TYN_DEPTH_U24:
         return 4;
     case TYN_RGB565_SRGB:
     case TYN_RGB16_LINEAR:
+    case TYN_DEPTH_U16:
         return 2;
     default:
         return 1;
@@ -160,8 +162,10 @@ int32_t tyn_format_bytes(tyn_format format)
     case TYN_RGBA8_SRGB:
     case TYN_BGRA8_SRGB:
     case TYN_DEPTH_F32:
+    case TYN_DEPTH_U24:
         return 4;
     case TYN_RGB565_SRGB:
+    case TYN_DEPTH_U16:
         return 2;
     case TYN_RGB8_LINEAR:
         return 3;

@@ -5,6 +5,7 @@
 #include "base.h"
 
 #define TYNI_FORMAT_BIT(format) (1u << (format))
+#define TYNI_DEPTH_FORMATS (TYNI_FORMAT_BIT(TYN_DEPTH_F32) | TYNI_FORMAT_BIT(TYN_DEPTH_U16) | TYNI_FORMAT_BIT(TYN_DEPTH_U24))
 
 /* Size, stride, alignment, and a format out of the set `formats` (of TYNI_FORMAT_BIT). pixels must not be NULL. */
 tyn_status tyni_check_image(const tyn_image *image, uint32_t formats);

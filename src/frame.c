@@ -11,6 +11,7 @@
 #include "check.h"
 #include "composite.h"
 #include "debug.h"
+#include "door.h"
 #include "entry.h"
 #include "gather.h"
 #include "medium.h"
@@ -29,6 +30,7 @@ typedef struct pass {
     tyn_context *context;
     const tyn_frame *frame;
     tyni_view view;
+    tyni_door depth;
     tyni_medium medium;
     tyni_lamp lamp;
     tyni_slices slices;
@@ -166,7 +168,7 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     tyni_slice_line(&slice, &p->slices, &p->lamp, &p->view, index);
     if (slice.first > slice.last)
         return;
-    tyni_sample_depths(s.depth, &p->slices, &slice, &p->view, &p->frame->depth);
+    tyni_sample_depths(s.depth, &p->slices, &slice, &p->view, &p->depth);
     if (tyni_view_bounded(&p->lamp))
         clamp_to_volume(p, &slice, s.depth);
     s.stats->slices++;
@@ -196,7 +198,6 @@ static void grid_job(void *argument, int32_t index, int32_t worker)
     const pass *p = argument;
     uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
     int32_t y = tyni_mini(index * p->field.spacing, p->view.height - 1);
-    const float *depth = tyni_image_row(&p->frame->depth, y);
     tyni_scratch s;
     scratch_of(p->context, worker, &s);
     memset(entries, 0, sizeof *entries * (size_t)p->field.pitch);
@@ -205,7 +206,7 @@ static void grid_job(void *argument, int32_t index, int32_t worker)
         tyni_vec3 d = tyni_view_direction(&p->view, (float)x + 0.5f, (float)y + 0.5f);
         float length = tyni_vec_length(d), value[3], t0, t1;
         tyni_vec3 v = tyni_vec_scale(d, 1.0f / length);
-        s.depth[i] = tyni_view_depth(&p->view, depth[x]);
+        s.depth[i] = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y));
         ray_value(p, NULL, v, s.depth[i] * length, 0.0f, s.stats, value);
         s.depth[i] = ray_range(p, v, s.depth[i] * length, &t0, &t1) ? t1 / length : 0.0f;
         s.value[0][i] = value[0];
@@ -268,18 +269,24 @@ static void finish(const pass *p, int32_t x, int32_t y, int32_t count, const flo
 {
     static const tyn_display plain = {1.0f, TYN_TONE_CLAMP, 0};
     const tyn_frame *frame = p->frame;
-    float rgb[3 * CHUNK];
+    float rgb[3 * CHUNK], share[3 * CHUNK];
     if (frame->scatter.pixels)
         tyni_composite_write(&frame->scatter, &plain, x, y, count, light);
-    if (!frame->target.pixels)
+    if (!frame->target.pixels && !frame->transmittance.pixels)
         return;
-    tyni_composite_read(&frame->colour, x, y, count, rgb);
     for (int32_t i = 0; i < count; i++) {
         tyni_vec3 d = tyni_view_direction(&p->view, (float)(x + i) + 0.5f, (float)y + 0.5f);
         float s = tyni_view_depth(&p->view, depth[i]) * tyni_vec_length(d);
         for (int32_t c = 0; c < 3; c++)
-            rgb[3 * i + c] = tyni_num_exp(-p->medium.sigma[c] * s) * rgb[3 * i + c] + light[3 * i + c];
+            share[3 * i + c] = tyni_num_exp(-p->medium.sigma[c] * s);
     }
+    if (frame->transmittance.pixels)
+        tyni_composite_write(&frame->transmittance, &plain, x, y, count, share);
+    if (!frame->target.pixels)
+        return;
+    tyni_composite_read(&frame->colour, x, y, count, rgb);
+    for (int32_t i = 0; i < 3 * count; i++)
+        rgb[i] = share[i] * rgb[i] + light[i];
     tyni_composite_write(&frame->target, &frame->display, x, y, count, rgb);
 }
 
@@ -305,24 +312,24 @@ static void band_job(void *argument, int32_t index, int32_t worker)
     tyni_scratch s;
     scratch_of(p->context, worker, &s);
     for (int32_t y = index * BAND; y < end; y++) {
-        const float *depth = tyni_image_row(&p->frame->depth, y);
         float *sum = p->context->light ? p->context->light + (ptrdiff_t)y * p->view.width * 3 : NULL;
         for (int32_t x = 0; x < p->view.width; x += CHUNK) {
             int32_t count = tyni_mini(CHUNK, p->view.width - x);
-            float light[3 * CHUNK];
+            float light[3 * CHUNK], room[CHUNK];
+            const float *depth = tyni_door_row(&p->depth, x, y, count, room);
             uint32_t rejected = 0;
             if (p->first)
                 memset(light, 0, sizeof light);
             else
                 memcpy(light, sum + 3 * (ptrdiff_t)x, sizeof *light * 3u * (size_t)count);
             if (p->method != TYN_METHOD_NONE)
-                add_light(p, x, y, count, depth + x, s.stats, light, &rejected);
+                add_light(p, x, y, count, depth, s.stats, light, &rejected);
             if (!p->last)
                 memcpy(sum + 3 * (ptrdiff_t)x, light, sizeof *light * 3u * (size_t)count);
             else
-                finish(p, x, y, count, depth + x, light);
+                finish(p, x, y, count, depth, light);
             if (p->frame->debug && p->first && p->frame->target.pixels)
-                debug_chunk(p, x, y, count, depth + x, rejected);
+                debug_chunk(p, x, y, count, depth, rejected);
         }
     }
 }
@@ -431,6 +438,7 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
     p.context = context;
     p.frame = frame;
     tyni_view_camera(&p.view, &frame->camera, frame->depth.width, frame->depth.height);
+    tyni_door_open(&p.depth, &frame->depth, &frame->depth_coding, &frame->camera);
     tyni_medium_prepare(&p.medium, frame->media, frame->medium_count);
     for (int32_t i = 0; i < lights && status == TYN_OK; i++) {
         p.first = i == 0;

@@ -2,12 +2,12 @@
 #include "sample.h"
 
 #include "base.h"
-#include "check.h"
 
 void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slice *slice, const tyni_view *view,
-                        const tyn_image *image)
+                        const tyni_door *door)
 {
-    ptrdiff_t stride = tyni_image_stride(image);
+    const tyn_image *image = door->image;
+    ptrdiff_t stride = door->stride;
     int32_t last_p = (slice->along_y ? image->height : image->width) - 1;
     int32_t last_m = (slice->along_y ? image->width : image->height) - 1;
     ptrdiff_t along = slice->along_y ? stride : (ptrdiff_t)sizeof(float);
@@ -17,7 +17,10 @@ void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slic
         float m = slice->m0 + slice->slope * tyni_slice_p(slices, j);
         int32_t i = (int32_t)tyni_clampf(m, 0.0f, (float)last_m);
         const uint8_t *pixel = (const uint8_t *)image->pixels + along * p + across * i;
-        depth[j] = tyni_view_depth(view, *(const float *)(const void *)pixel);
+        if (door->plain)
+            depth[j] = tyni_view_depth(view, *(const float *)(const void *)pixel);
+        else
+            depth[j] = slice->along_y ? tyni_door_depth(door, i, p) : tyni_door_depth(door, p, i);
     }
 }
 

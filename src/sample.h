@@ -3,6 +3,7 @@
 #ifndef TYNI_SAMPLE_H
 #define TYNI_SAMPLE_H
 
+#include "door.h"
 #include "slice.h"
 #include "view.h"
 
@@ -19,7 +20,7 @@ static inline int tyni_sample_bit(const uint32_t *words, int32_t j)
 
 /* depth[j] for first .. last: view-space depth of the pixel under each sample (the nearest on the screen), 0 .. far. */
 void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slice *slice, const tyni_view *view,
-                        const tyn_image *image);
+                        const tyni_door *door);
 
 /* Sets bit j where depth jumps between j and j + 1 by more than `threshold` of the nearer one; clears all others. Returns how
  * many. Samples off the screen are no part of first .. last, so the ends of a line need no breaks. */

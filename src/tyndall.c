@@ -5,6 +5,7 @@
 #include "arena.h"
 #include "check.h"
 #include "composite.h"
+#include "door.h"
 #include "frame.h"
 #include "jobs.h"
 #include "slide.h"
@@ -130,7 +131,7 @@ static tyn_status check_colours(const tyn_config *c, const tyn_frame *f)
 static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
 {
     const tyn_config *c = &context->config;
-    tyn_status status = tyni_check_image(&f->depth, TYNI_FORMAT_BIT(TYN_DEPTH_F32));
+    tyn_status status = tyni_check_image(&f->depth, TYNI_DEPTH_FORMATS);
     if (status == TYN_OK && (f->depth.width > c->width || f->depth.height > c->height))
         status = TYN_E_LIMIT;
     if (status == TYN_OK)
@@ -140,7 +141,11 @@ static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
     if (status == TYN_OK)
         status = check_optional(&f->scatter, TYNI_FORMAT_BIT(TYN_RGB_F32), &f->depth);
     if (status == TYN_OK)
+        status = check_optional(&f->transmittance, TYNI_FORMAT_BIT(TYN_RGB_F32), &f->depth);
+    if (status == TYN_OK)
         status = tyni_check_camera(&f->camera);
+    if (status == TYN_OK)
+        status = tyni_door_check(&f->depth_coding, &f->camera);
     if (status == TYN_OK && f->light_count > c->lights)
         status = TYN_E_LIMIT;
     if (status == TYN_OK)
