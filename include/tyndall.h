@@ -435,7 +435,7 @@ typedef struct tyn_raster tyn_raster;
 #define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
     (0 * (size_t)(width) * (size_t)(height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +               \
      TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
-#define TYN_RASTER_BYTES 9344
+#define TYN_RASTER_BYTES 15488
 
 /* As tyn_measure and tyn_init. */
 tyn_status tyn_raster_measure(const tyn_raster_config *config, size_t *bytes);

@@ -14,6 +14,7 @@ typedef char size_of_chunk[sizeof(tyni_raster_chunk) == 24 ? 1 : -1];
 typedef char size_of_tally[sizeof(tyni_raster_tally) == 64 ? 1 : -1];
 typedef char size_of_count[sizeof(tyni_jobs_count) == 64 ? 1 : -1];
 typedef char size_of_lamp[sizeof(tyni_raster_lamp) <= 64 ? 1 : -1];
+typedef char size_of_slide[sizeof(tyni_slide) <= 64 ? 1 : -1];
 typedef char size_of_map[sizeof(tyni_raster_map) == 64 ? 1 : -1];
 
 static tyn_status resolve(tyn_raster_config *out, const tyn_raster_config *config)
@@ -41,6 +42,7 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
     tyni_jobs_count *counts = tyni_arena_take(arena, workers, sizeof *counts);
     tyni_raster_lamp *lamps = tyni_arena_take(arena, TYN_MAX_LIGHTS, 64);
     tyni_raster_map *maps = tyni_arena_take(arena, (size_t)TYN_MAX_LIGHTS * TYN_MAX_MAPS, sizeof *maps);
+    tyni_slide *slides = tyni_arena_take(arena, TYN_MAX_LIGHTS * TYNI_RASTER_SLIDES, 64);
     if (raster) {
         raster->width = config->width;
         raster->height = config->height;
@@ -53,6 +55,7 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
         raster->counts = counts;
         raster->lamps = lamps;
         raster->maps = maps;
+        raster->slides = slides;
     }
     return raster;
 }
@@ -147,6 +150,23 @@ static tyn_status check_targets(const tyn_raster *raster, const tyn_surface *sur
     return TYN_OK;
 }
 
+static tyn_status check_lights(const tyn_light *lights, int32_t count)
+{
+    tyn_status status;
+    if (count > TYN_MAX_LIGHTS)
+        return TYN_E_LIMIT;
+    status = tyni_check_lights(lights, count, TYN_MAX_SHADOW, TYN_MAX_MAPS);
+    for (int32_t i = 0; i < count && status == TYN_OK; i++) {
+        status = tyni_slide_check(&lights[i]);
+        for (int32_t k = 0; k <= lights[i].more_count && status == TYN_OK; k++) {
+            const tyn_shadow *shadow = k ? &lights[i].more[k - 1] : &lights[i].shadow;
+            if (shadow->tint)
+                status = tyni_check_image(shadow->tint, TYNI_SLIDE_FORMATS);
+        }
+    }
+    return status;
+}
+
 static tyn_status check_surface(const tyn_raster *raster, const tyn_surface *surface)
 {
     tyn_status status;
@@ -156,9 +176,7 @@ static tyn_status check_surface(const tyn_raster *raster, const tyn_surface *sur
     if (status == TYN_OK)
         status = tyni_check_camera(&surface->camera);
     if (status == TYN_OK)
-        status = surface->light_count > TYN_MAX_LIGHTS
-                     ? TYN_E_LIMIT
-                     : tyni_check_lights(surface->lights, surface->light_count, TYN_MAX_SHADOW, TYN_MAX_MAPS);
+        status = check_lights(surface->lights, surface->light_count);
     if (status == TYN_OK)
         status = tyni_check_media(surface->media, surface->medium_count);
     if (status == TYN_OK && (!tyni_check_colour(surface->ambient) || !tyni_check_colour(surface->background) ||
@@ -207,8 +225,9 @@ static tyn_status shade(const tyni_raster_pass *pass, const tyn_surface *surface
     shading.surface = surface;
     shading.lamps = pass->raster->lamps;
     for (int32_t i = 0; i < surface->light_count; i++)
-        tyni_raster_set_lamp(&pass->raster->lamps[i], &pass->raster->maps[i * TYN_MAX_MAPS], &surface->lights[i],
-                             surface->camera.position, bias);
+        tyni_raster_set_lamp(&pass->raster->lamps[i], &pass->raster->maps[i * TYN_MAX_MAPS],
+                             &pass->raster->slides[i * TYNI_RASTER_SLIDES], &surface->lights[i], surface->camera.position,
+                             bias);
     tyni_medium_extinction(surface->media, surface->medium_count, shading.sigma);
     shading.hazy = shading.sigma[0] > 0.0f || shading.sigma[1] > 0.0f || shading.sigma[2] > 0.0f;
     return tyni_jobs_run(&pass->jobs, tyni_raster_shade, &shading,

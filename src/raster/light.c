@@ -74,13 +74,15 @@ static void set_map(tyni_raster_map *map, const tyn_shadow *shadow, float bias)
         set_perspective(map, shadow, texels);
 }
 
-void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, const tyn_light *light, const float origin[3],
-                          float bias)
+void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, tyni_slide *slides, const tyn_light *light,
+                          const float origin[3], float bias)
 {
     float sine;
     memset(lamp, 0, sizeof *lamp);
     lamp->light = light;
     lamp->maps = maps;
+    lamp->slides = slides;
+    (void)tyni_slide_set(slides, light, origin);
     lamp->cosine = -1.0f;
     if (light->kind != TYN_LIGHT_POINT)
         lamp->towards = tyni_vec_scale(tyni_vec_normalise(tyni_vec_load(light->direction)), -1.0f);
@@ -133,7 +135,16 @@ static float compare(const tyn_shadow *shadow, float u, float v, float z, float 
     return tyni_clampf((sum - 0.5f) * SHARPNESS + 0.5f, 0.0f, 1.0f);
 }
 
-float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, tyni_raster_slopes *slopes)
+static void tint(const tyn_image *image, float u, float v, float rgb[3])
+{
+    float texel[3];
+    tyni_slide_sample(image, u * (float)image->width, v * (float)image->height, texel);
+    for (int32_t c = 0; c < 3; c++)
+        rgb[c] *= texel[c];
+}
+
+float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, tyni_raster_slopes *slopes,
+                          float rgb[3])
 {
     for (int32_t i = 0; i <= lamp->light->more_count; i++) {
         const tyn_shadow *shadow = shadow_of(lamp->light, i);
@@ -148,6 +159,8 @@ float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_ve
         z = form(shadow, 2, point) * inverse;
         if (!(u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f))
             continue;
+        if (shadow->tint)
+            tint(shadow->tint, u, v, rgb);
         if (!(slopes->ready >> i & 1u))
             set_slope(slopes, i, map, 1.0f / size, point, normal);
         z += tyni_absf(map->bias - map->bias_z * z);

@@ -13,6 +13,7 @@
 
 #include "base.h"
 #include "jobs.h"
+#include "slide.h"
 #include "vec.h"
 
 #define TYNI_RASTER_CHUNK 64  /* triangles that one job sets up */
@@ -20,6 +21,7 @@
 #define TYNI_RASTER_SUB 256   /* grid positions per pixel */
 #define TYNI_RASTER_CORNERS 8 /* 3, and one more for the near plane and each side of the guard band */
 #define TYNI_RASTER_BATCH 2048
+#define TYNI_RASTER_SLIDES 6           /* most textures of a light */
 #define TYNI_RASTER_NOTHING UINT32_MAX /* a mesh number: background */
 
 /* The guard band: pieces are cut this many pixels off the image's centre. With images up to 32768 that keeps grid coordinates
@@ -117,6 +119,7 @@ typedef struct tyni_raster_map {
 typedef struct tyni_raster_lamp {
     const tyn_light *light;
     const tyni_raster_map *maps; /* of light->shadow, then of light->more */
+    const tyni_slide *slides;    /* light->texture_count of them */
     tyni_vec3 towards;           /* to a directional light; against a spot's axis */
     tyni_vec3 position;          /* spot, point: relative to the camera */
     float cosine;                /* of half the cone's angle; -1 for a point */
@@ -139,6 +142,7 @@ struct tyn_raster {
     tyni_jobs_count *counts;    /* workers */
     tyni_raster_lamp *lamps;    /* TYN_MAX_LIGHTS */
     tyni_raster_map *maps;      /* TYN_MAX_LIGHTS * TYN_MAX_MAPS */
+    tyni_slide *slides;         /* TYN_MAX_LIGHTS * TYNI_RASTER_SLIDES */
 };
 
 /* view.c */
@@ -191,13 +195,14 @@ static inline float tyni_raster_at(const tyni_raster_plane *p, int32_t x, int32_
     return p->dx * (float)(x - p->x0) + (p->dy * (float)(y - p->y0) + p->value);
 }
 
-/* light.c. `maps` is room for TYN_MAX_MAPS. */
-void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, const tyn_light *light, const float origin[3],
-                          float bias);
+/* light.c. Room: TYN_MAX_MAPS maps, TYNI_RASTER_SLIDES slides. */
+void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, tyni_slide *slides, const tyn_light *light,
+                          const float origin[3], float bias);
 
 /* The share of the light that arrives at a point, 0 .. 1, shadows only, on a plane of that normal. The point is in the world.
- */
-float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, tyni_raster_slopes *slopes);
+ * Multiplies rgb by the map's tint. */
+float tyni_raster_visible(const tyni_raster_lamp *lamp, tyni_vec3 point, tyni_vec3 normal, tyni_raster_slopes *slopes,
+                          float rgb[3]);
 
 /* shade.c */
 typedef struct tyni_raster_shading {

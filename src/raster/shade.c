@@ -67,26 +67,33 @@ static void add_light(face *f, const tyni_raster_shading *s, int32_t i, tyni_vec
 {
     const tyni_raster_lamp *lamp = &s->lamps[i];
     const tyn_light *light = lamp->light;
-    float amount = f->facing[i], distance = 0.0f;
+    float amount = f->facing[i], distance = 0.0f, rgb[3] = {light->colour[0], light->colour[1], light->colour[2]};
     if (!(amount > 0.0f))
         return;
     if (light->kind != TYN_LIGHT_DIRECTIONAL) {
         const tyni_vec3 to = tyni_vec_sub(lamp->position, point);
         const float square = tyni_maxf(tyni_vec_dot(to, to), 1e-12f); /* the light touches the surface: finite all the same */
         distance = sqrtf(square);
-        if (light->kind == TYN_LIGHT_SPOT && tyni_vec_dot(to, lamp->towards) < lamp->cosine * distance)
+        if (light->kind == TYN_LIGHT_SPOT && !light->texture_count && tyni_vec_dot(to, lamp->towards) < lamp->cosine * distance)
             return;
         amount = tyni_maxf(tyni_vec_dot(f->normal, to), 0.0f) / (distance * square);
     }
+    if (light->texture_count) { /* instead of the cone, a frustum; outside of a gobo, dark */
+        float texel[3];
+        if (!tyni_slide_colour(lamp->slides, light->texture_count, point, texel))
+            return;
+        for (int32_t c = 0; c < 3; c++)
+            rgb[c] *= texel[c];
+    }
     if (lamp->mapped) {
         const tyni_vec3 world = tyni_vec_add(point, tyni_vec_load(s->surface->camera.position));
-        amount *= tyni_raster_visible(lamp, world, f->normal, &f->slopes[i]);
+        amount *= tyni_raster_visible(lamp, world, f->normal, &f->slopes[i], rgb);
     }
     if (!(amount > 0.0f))
         return;
     for (int32_t c = 0; c < 3; c++) {
         const float dim = s->hazy && distance > 0.0f ? tyni_num_exp(-s->sigma[c] * distance) : 1.0f;
-        sum[c] += light->colour[c] * amount * dim;
+        sum[c] += rgb[c] * amount * dim;
     }
 }
 
