@@ -7,7 +7,8 @@
  * corner's does not. That is the top-left rule. */
 #include "raster/raster.h"
 
-/* Where an edge's row begins: x + (rest > 0 done by the offset), stepped like a division with remainder, row by row. */
+/* First pixel centre at or right of an edge, in one row: a division that is carried on row by row, quotient `x`, remainder
+ * `rest`. */
 typedef struct edge {
     int32_t x, step;
     int64_t rest, step_rest, whole; /* 0 <= rest < whole; also of a step */
@@ -18,7 +19,7 @@ typedef struct brush {
     const tyni_raster_piece *piece;
     int64_t pixels;
     int32_t probe;  /* only asks whether anything is covered */
-    int32_t masked; /* the piece has a mask; */
+    int32_t masked; /* the piece has a mask */
     int32_t ready;  /* its cutout is set up, which waits for the first pixel that passes the depth test */
     tyni_raster_cutout cutout;
 } brush;
