@@ -47,7 +47,7 @@ typedef enum tyn_status {
     TYN_E_IMAGE = -5,    /* an image has a wrong size, format or stride */
     TYN_E_CAMERA = -6,   /* camera: not finite, axes not orthonormal, empty window, or not 0 < near < far */
     TYN_E_LIGHT = -7,    /* light: not finite, colour < 0, direction not of length 1, angle or shadow map out of range */
-    TYN_E_MEDIUM = -8,   /* medium: not finite, coefficient < 0, or g outside -1 .. 1 */
+    TYN_E_MEDIUM = -8,   /* medium: not finite, coefficient < 0, or g outside -1 .. 1; or a frame's art control out of range */
     TYN_E_MESH = -9,     /* mesh: index out of range, or a material out of range */
     TYN_E_DISPLAY = -10, /* display: not finite, exposure < 0, or an unknown tone curve */
     TYN_E_LIMIT = -11,   /* more lights, or a larger image or shadow map, than the config has room for */
@@ -201,6 +201,9 @@ typedef struct tyn_light {
     int32_t texture_count;
     float up[3];     /* spot, directional with a texture: not parallel to direction */
     float extent[2]; /* directional with a texture: > 0 */
+    /* Art, not physics: both multiply the light that the medium scatters, not that on surfaces. */
+    float scale;   /* 0 means 1, below 0 means none: the light has no shafts, and costs nothing in tyn_render */
+    float tint[3]; /* RGB, >= 0; 0 0 0 means 1 1 1 */
 } tyn_light;
 
 /* Sets light->shadow.matrix (nothing else) for rendering or reading a map of this light: for a spot the cone's square frustum,
@@ -397,6 +400,14 @@ typedef struct tyn_frame {
     tyn_clock clock;              /* NULL: no times */
     void *clock_context;
     tyn_stats *stats; /* NULL: not wanted */
+    /* Art, not physics. Every method and tyn_query obey them alike; 0 leaves physics as it is. */
+    float shaft_contrast; /* how strongly shadows show in the medium: with V the part of a ray's light that shadows leave, V
+                             becomes max(0, 1 - shaft_contrast (1 - V)). 0 means 1; between 0 and 1 shafts soften while the
+                             glow around them stays; above 1 they darken; below 0: no shadows in the medium at all */
+    float fog_scale;    /* multiplies the extinction of surfaces (only theirs, not of the light on its way through the medium):
+                           fog apart from shafts. 0 means 1, below 0 none: surfaces stay clear */
+    float max_distance; /* metres along a view ray beyond which nothing scatters and nothing is attenuated any more; > 0,
+                           0: no such end */
 } tyn_frame;
 
 /* Renders L = exp(-extinction s) colour + L_scat into target. All images have the depth image's size, at most the config's.

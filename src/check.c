@@ -105,6 +105,8 @@ static tyn_status check_light(const tyn_light *l, int32_t shadow_limit, int32_t 
         return TYN_E_LIGHT;
     if (l->kind != TYN_LIGHT_DIRECTIONAL && !tyni_check_finite(l->position, 3))
         return TYN_E_LIGHT;
+    if (!tyni_finite(l->scale) || !tyni_check_colour(l->tint))
+        return TYN_E_LIGHT;
     if (l->kind == TYN_LIGHT_SPOT && (!(l->angle > 0.0f) || !(l->angle < 2.967060f)))
         return TYN_E_LIGHT;
     if (l->texture_count < 0 || l->texture_count > 6)

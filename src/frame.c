@@ -7,6 +7,7 @@
  *                    transmittance, colour, exposure, tone, dither, format */
 #include "frame.h"
 
+#include "art.h"
 #include "base.h"
 #include "check.h"
 #include "composite.h"
@@ -32,6 +33,7 @@ typedef struct pass {
     tyni_view view;
     tyni_door depth;
     tyni_medium medium;
+    float fog[3]; /* extinction of surfaces */
     tyni_lamp lamp;
     tyni_slices slices;
     tyni_field field;
@@ -65,7 +67,7 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
 static int ray_range(const pass *p, tyni_vec3 v, float s, float *t0, float *t1)
 {
     *t0 = 0.0f;
-    *t1 = s;
+    *t1 = tyni_art_reach(p->frame, s);
     return s > 0.0f && tyni_view_clip(&p->lamp, v, t0, t1);
 }
 
@@ -102,7 +104,8 @@ static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, 
         value[1] = value[0];
 }
 
-/* A spot sees depth only as far as its cone (or its slide's light) reaches: clamps to it, so that breaks behind the beam cost
+/* Where light ends before the surface, depth does: at the far side of a spot's cone (or its slide's light), or at the frame's
+ * max_distance. Clamps to it, so that breaks behind the beam cost
  * nothing, and marks samples beside the beam by depth 0. */
 static void clamp_to_volume(const pass *p, const tyni_slice *slice, float *depth)
 {
@@ -169,7 +172,7 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     if (slice.first > slice.last)
         return;
     tyni_sample_depths(s.depth, &p->slices, &slice, &p->view, &p->depth);
-    if (tyni_view_bounded(&p->lamp))
+    if (tyni_view_bounded(&p->lamp) || p->frame->max_distance > 0.0f)
         clamp_to_volume(p, &slice, s.depth);
     s.stats->slices++;
     s.stats->samples += slice.last - slice.first + 1;
@@ -276,9 +279,9 @@ static void finish(const pass *p, int32_t x, int32_t y, int32_t count, const flo
         return;
     for (int32_t i = 0; i < count; i++) {
         tyni_vec3 d = tyni_view_direction(&p->view, (float)(x + i) + 0.5f, (float)y + 0.5f);
-        float s = tyni_view_depth(&p->view, depth[i]) * tyni_vec_length(d);
+        float s = tyni_art_reach(frame, tyni_view_depth(&p->view, depth[i]) * tyni_vec_length(d));
         for (int32_t c = 0; c < 3; c++)
-            share[3 * i + c] = tyni_num_exp(-p->medium.sigma[c] * s);
+            share[3 * i + c] = tyni_num_exp(-p->fog[c] * s);
     }
     if (frame->transmittance.pixels)
         tyni_composite_write(&frame->transmittance, &plain, x, y, count, share);
@@ -373,10 +376,12 @@ static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *
     tyn_status status = TYN_OK;
     uint64_t start = now(p->frame), middle;
     p->method = c->config.method;
-    if (!light || !p->medium.scatters)
+    if (!light || !p->medium.scatters || light->scale < 0.0f)
         p->method = TYN_METHOD_NONE;
-    if (light)
+    if (light) {
         tyni_view_lamp(&p->lamp, light, &p->view);
+        tyni_art_lamp(&p->lamp, light, p->frame);
+    }
     /* at the light's own position there is no epipole, and a ray stays inside one texel: a ray for each pixel costs nothing */
     if (p->method == TYN_METHOD_EPIPOLAR && p->lamp.at_camera)
         p->method = TYN_METHOD_MARCH;
@@ -429,6 +434,7 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
     memset(&stats, 0, sizeof stats);
     jobs.executor = frame->executor;
     jobs.counts = context->counts;
+    jobs.plain = NULL;
     jobs.workers = frame->executor ? frame->executor->workers : 1;
     for (int32_t w = 0; w < context->config.workers; w++) {
         tyni_scratch s;
@@ -440,6 +446,7 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
     tyni_view_camera(&p.view, &frame->camera, frame->depth.width, frame->depth.height);
     tyni_door_open(&p.depth, &frame->depth, &frame->depth_coding, &frame->camera);
     tyni_medium_prepare(&p.medium, frame->media, frame->medium_count);
+    tyni_art_fog(p.fog, p.medium.sigma, frame);
     for (int32_t i = 0; i < lights && status == TYN_OK; i++) {
         p.first = i == 0;
         p.last = i == lights - 1;

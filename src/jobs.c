@@ -10,13 +10,18 @@ typedef struct call {
     int32_t count;
 } call;
 
+static int32_t *count_of(const tyni_jobs *jobs, int32_t worker)
+{
+    return jobs->plain ? &jobs->plain[worker] : &jobs->counts[worker].done;
+}
+
 static void counted(void *argument, int32_t index, int32_t worker)
 {
     const call *c = argument;
     if (worker < 0 || worker >= c->jobs->workers || index < 0 || index >= c->count)
         return;
     c->job(c->argument, index, worker);
-    c->jobs->counts[worker].done++;
+    ++*count_of(c->jobs, worker);
 }
 
 tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int32_t count)
@@ -24,7 +29,7 @@ tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int
     call c = {jobs, job, argument, count};
     int32_t done = 0;
     for (int32_t w = 0; w < jobs->workers; w++)
-        jobs->counts[w].done = 0;
+        *count_of(jobs, w) = 0;
     if (jobs->executor) {
         if (count > 0)
             jobs->executor->run(jobs->executor->context, counted, &c, count);
@@ -33,7 +38,7 @@ tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int
             counted(&c, i, 0);
     }
     for (int32_t w = 0; w < jobs->workers; w++)
-        done += jobs->counts[w].done;
+        done += *count_of(jobs, w);
     return done == count ? TYN_OK : TYN_E_EXECUTOR;
 }
 

@@ -13,6 +13,7 @@ typedef struct tyni_jobs_count {
 typedef struct tyni_jobs {
     const tyn_executor *executor; /* NULL: the calling thread */
     tyni_jobs_count *counts;      /* one per worker, in the arena */
+    int32_t *plain;               /* or, for a call without an arena, these; else NULL */
     int32_t workers;              /* room in counts and in the scratch; 1 .. TYN_MAX_WORKERS */
 } tyni_jobs;
 

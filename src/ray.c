@@ -107,6 +107,25 @@ static void meter_end(meter *m)
         m->sum[i] = tyni_clampf(m->outside ? all[i] - m->sum[i] : m->sum[i], 0.0f, all[i]);
 }
 
+/* The end of a ray: shadows as strong as the frame wants them. */
+static void meter_lift(meter *m)
+{
+    float lit[3], all[3];
+    if (m->lamp->lift == 0.0f)
+        return;
+    memcpy(lit, m->sum, sizeof *lit * (size_t)m->integral->count);
+    if (m->lamp->coloured) {
+        for (int32_t i = 0; i < m->integral->count; i++)
+            m->sum[i] = 0.0f;
+        meter_coloured(m, m->integral->t0, m->integral->t1);
+        memcpy(all, m->sum, sizeof *all * (size_t)m->integral->count);
+    } else {
+        tyni_integral_at(m->integral, m->integral->t1, all);
+    }
+    for (int32_t i = 0; i < m->integral->count; i++)
+        m->sum[i] = tyni_maxf(lit[i] + m->lamp->lift * (all[i] - lit[i]), 0.0f);
+}
+
 /* A form along a ray: c + t * d. */
 typedef struct line {
     float c, d;
@@ -264,6 +283,7 @@ void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, 
             }
         }
     meter_end(&m);
+    meter_lift(&m);
 }
 
 /* Visibility of columns i .. i + 31 of the row; bits past its end are 0. */
@@ -343,6 +363,7 @@ void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyn
             row_words(piece, position, r, w, from, to, &m);
     }
     meter_end(&m);
+    meter_lift(&m);
 }
 
 int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, tyni_vec3 v)
@@ -380,20 +401,23 @@ static int point_lit(const tyni_lamp *lamp, tyni_vec3 v, float t)
 void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float t0, float t1, int32_t steps,
                     float light[3])
 {
-    float dt = (t1 - t0) / (float)steps, density[3], rgb[3] = {1.0f, 1.0f, 1.0f};
+    float dt = (t1 - t0) / (float)steps, density[3], rgb[3] = {1.0f, 1.0f, 1.0f}, dark[3] = {0.0f, 0.0f, 0.0f};
     light[0] = light[1] = light[2] = 0.0f;
     if (!(dt > 0.0f))
         return;
     for (int32_t i = 0; i < steps; i++) {
         float t = t0 + ((float)i + 0.5f) * dt;
-        if (!point_lit(lamp, v, t))
+        int lit = point_lit(lamp, v, t);
+        if (!lit && lamp->lift == 0.0f)
             continue;
         tyni_integral_density(medium, lamp, v, t, density);
         if (lamp->coloured)
             tyni_view_colour(lamp, tyni_vec_scale(v, t), rgb);
         for (int32_t c = 0; c < 3; c++)
-            light[c] += density[c] * dt * rgb[c];
+            *(lit ? &light[c] : &dark[c]) += density[c] * dt * rgb[c];
     }
+    for (int32_t c = 0; c < 3; c++)
+        light[c] = tyni_maxf(light[c] + lamp->lift * dark[c], 0.0f);
 }
 
 void tyni_ray_pixel(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float s, int32_t steps, float light[3])

@@ -41,5 +41,7 @@ void tyni_slide_face(int32_t face, tyni_vec3 *d, tyni_vec3 *right, tyni_vec3 *do
 
 /* Light textures at the door: count, formats, up, extent. */
 tyn_status tyni_slide_check(const tyn_light *light);
+/* And with them the tints of all maps, of a frame's lights. TYN_E_LIMIT for any where there is no room (not `textured`). */
+tyn_status tyni_slide_lights(const tyn_light *lights, int32_t count, int textured);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include "base.h"
 #include "arena.h"
+#include "art.h"
 #include "check.h"
 #include "composite.h"
 #include "door.h"
@@ -109,25 +110,6 @@ static tyn_status check_optional(const tyn_image *image, uint32_t formats, const
     return status;
 }
 
-/* Coloured lights need the room that config.textured makes. */
-static tyn_status check_colours(const tyn_config *c, const tyn_frame *f)
-{
-    tyn_status status = TYN_OK;
-    for (int32_t i = 0; i < f->light_count && status == TYN_OK; i++) {
-        const tyn_light *l = &f->lights[i];
-        int coloured = l->texture_count || l->shadow.tint;
-        status = tyni_slide_check(l);
-        for (int32_t k = -1; k < l->more_count && status == TYN_OK; k++) {
-            const tyn_shadow *s = k < 0 ? &l->shadow : &l->more[k];
-            coloured |= s->tint != NULL;
-            status = s->tint ? tyni_check_image(s->tint, TYNI_SLIDE_FORMATS) : TYN_OK;
-        }
-        if (status == TYN_OK && coloured && !c->textured)
-            status = TYN_E_LIMIT;
-    }
-    return status;
-}
-
 static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
 {
     const tyn_config *c = &context->config;
@@ -151,9 +133,11 @@ static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
     if (status == TYN_OK)
         status = tyni_check_lights(f->lights, f->light_count, c->shadow_size, c->maps);
     if (status == TYN_OK)
-        status = check_colours(c, f);
+        status = tyni_slide_lights(f->lights, f->light_count, c->textured);
     if (status == TYN_OK)
         status = tyni_check_media(f->media, f->medium_count);
+    if (status == TYN_OK)
+        status = tyni_art_check(f);
     if (status == TYN_OK)
         status = tyni_check_display(&f->display);
     if (status == TYN_OK && (uint32_t)f->debug > (uint32_t)TYN_DEBUG_OUTSIDE)

@@ -58,6 +58,7 @@ typedef struct tyni_lamp {
     float ex, ey, ew;
     int behind;
     /* Shadow maps: a point belongs to the first that covers it. `outside`: whether what none covers is lit. */
+    float lift; /* what comes back of the light that shadows take: 0 by physics, else set by art.h */
     int32_t slide_count;
     tyni_slide slides[6];
     int coloured; /* slides or tints: the light's colour differs from column to column */
