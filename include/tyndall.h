@@ -153,18 +153,36 @@ tyn_status tyn_medium_air(tyn_medium media[2], float scale);
 
 /* ---- light and its shadow map -------------------------------------------------------------------------------------- */
 
+/* What a shadow map's texels are. */
+typedef enum tyn_map_coding {
+    TYN_MAP_REVERSED = 0,  /* Z / W of the matrix: 1 nearest to the light, falls with the distance, 0 at the far end */
+    TYN_MAP_PROJECTED = 1, /* Z / W of the matrix: at_near nearest to the light, at_far at the far end */
+    TYN_MAP_LINEAR = 2 /* stored * scale is, for a perspective matrix, W (the distance along the light's axis; Z is not used),
+                          for a parallel one Z / W, the distance along the light, between at_near and at_far */
+} tyn_map_coding;
+
 /* A shadow map: for each texel the surface nearest to the light.
  * `matrix` takes a world point to (U, V, Z, W), W > 0 in front of the light: u = U / W and v = V / W are 0 .. 1 from the
- * left and from the top row; z = Z / W is 1 nearest to the light and falls with the distance from it, 0 at the far end.
- * A texel holds the largest z that its centre sees; 0: nothing, all lit; values above 1 count as 1.
- * z must be a projective depth (linear on planes in u and v): linear distance for a parallel projection, near / distance for a
- * perspective one. */
+ * left and from the top row; z = Z / W is what a texel holds of the nearest surface that its centre sees. What is stored at the
+ * far end or beyond it, or is NaN, is nothing: all lit; values beyond the near end count as the near end.
+ * z must be a projective depth (linear on planes in u and v), as every depth buffer's is: linear distance for a parallel
+ * projection, a + b / distance for a perspective one. TYN_MAP_LINEAR is for maps that hold distances under a perspective.
+ * The fits below make matrices for TYN_MAP_REVERSED, and that is what the rasterizer draws. */
 typedef struct tyn_shadow {
-    const float *depth;    /* size * size floats, rows without a gap; NULL: no shadows from this light */
-    int32_t size;          /* texels, 1 .. TYN_MAX_SHADOW; 0 with depth == NULL */
+    const void *depth;     /* the top left texel, aligned to the format; NULL: no shadows from this light */
+    int32_t size;          /* texels of a row, 1 .. TYN_MAX_SHADOW; 0 with depth == NULL */
     float matrix[16];      /* must be invertible where depth is given */
     const tyn_image *tint; /* colour of the light in each column of the map, such as through stained glass between the light and
                               all that is seen: multiplies it. A texture as in tyn_light, over the whole map; NULL: white */
+    int32_t height;        /* rows, 1 .. TYN_MAX_SHADOW; 0: as many as `size` */
+    tyn_format format;     /* TYN_DEPTH_F32, also by 0, or TYN_DEPTH_U16: value / 65535, with TYN_MAP_LINEAR value * scale */
+    ptrdiff_t stride;      /* bytes from row to row, as of tyn_image: 0: without a gap; negative: bottom row first */
+    tyn_map_coding coding;
+    float at_near, at_far; /* projected, and linear under a parallel matrix: as in tyn_depth_coding; both 0: 0, 1. Linear under
+                              a perspective one: what lies at at_far or beyond is nothing; 0: of U16 what is stored as 65535 */
+    float scale;           /* linear: > 0; 0: 1 */
+    float bias; /* texels, 0 .. 64: how far shadows in the air begin behind what casts them. Shafts need none: 0. Surfaces
+                   have tyn_surface's */
 } tyn_shadow;
 
 #define TYN_MAX_SHADOW 16384
@@ -446,7 +464,7 @@ typedef struct tyn_raster tyn_raster;
 #define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
     (0 * (size_t)(width) * (size_t)(height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +               \
      TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
-#define TYN_RASTER_BYTES 15488
+#define TYN_RASTER_BYTES 23680
 
 /* As tyn_measure and tyn_init. */
 tyn_status tyn_raster_measure(const tyn_raster_config *config, size_t *bytes);
@@ -485,10 +503,10 @@ typedef struct tyn_surface {
  * TYN_E_NULL, TYN_E_IMAGE, TYN_E_ALIGN, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MEDIUM, TYN_E_MESH, TYN_E_LIMIT, TYN_E_EXECUTOR. */
 tyn_status tyn_raster_surface(tyn_raster *raster, const tyn_surface *surface);
 
-/* Draws the meshes into `depth` (shadow->size squared floats) as shadow->matrix sees them; shadow->depth is not read, so that
- * it may be the same memory. Geometry nearer to the light than the map's near end is clamped to 1, not clipped: blockers
- * outside the view still cast. executor, clock and stats may be NULL. TYN_E_NULL, TYN_E_LIGHT (size or matrix), TYN_E_MESH,
- * TYN_E_LIMIT, TYN_E_EXECUTOR. */
+/* Draws the meshes into `depth` (floats, without gaps) as shadow->matrix sees them; shadow->depth is not read, so that
+ * it may be the same memory; its format, stride and coding must be 0. Geometry nearer to the light than the map's near end is
+ * clamped to 1, not clipped: blockers outside the view still cast. executor, clock and stats may be NULL. TYN_E_NULL,
+ * TYN_E_LIGHT (shadow), TYN_E_MESH, TYN_E_LIMIT, TYN_E_EXECUTOR. */
 tyn_status tyn_raster_shadow(tyn_raster *raster, const tyn_shadow *shadow, float *depth, const tyn_mesh *meshes,
                              int32_t mesh_count, const tyn_executor *executor, tyn_clock clock, void *clock_context,
                              tyn_raster_stats *stats);

@@ -87,13 +87,39 @@ tyn_status tyni_check_camera(const tyn_camera *c)
     return TYN_OK;
 }
 
+int tyni_check_range(float at_near, float at_far, float ends[2])
+{
+    ends[0] = at_near;
+    ends[1] = at_near == 0.0f && at_far == 0.0f ? 1.0f : at_far;
+    return tyni_absf(at_near) <= 1e6f && tyni_absf(at_far) <= 1e6f && tyni_absf(ends[1] - ends[0]) >= 1e-6f;
+}
+
+static int coding_fits(const tyn_shadow *s)
+{
+    float ends[2];
+    if ((uint32_t)s->coding > (uint32_t)TYN_MAP_LINEAR || !(s->bias >= 0.0f && s->bias <= 64.0f))
+        return 0;
+    if (!(s->scale >= 0.0f) || !tyni_finite(s->scale))
+        return 0;
+    if (s->coding == TYN_MAP_LINEAR && !tyni_shadow_parallel(s))
+        return s->at_far >= 0.0f;
+    return s->coding == TYN_MAP_REVERSED || tyni_check_range(s->at_near, s->at_far, ends);
+}
+
 static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)
 {
+    int32_t height = tyni_shadow_height(s), bytes = tyni_shadow_bytes(s);
     if (!s->depth)
         return TYN_OK;
-    if (s->size < 1 || s->size > TYN_MAX_SHADOW || !tyni_check_finite(s->matrix, 16) || (uintptr_t)s->depth % sizeof(float))
+    if (s->size < 1 || s->size > TYN_MAX_SHADOW || height < 1 || height > TYN_MAX_SHADOW || !tyni_check_finite(s->matrix, 16))
         return TYN_E_LIGHT;
-    return s->size > limit ? TYN_E_LIMIT : TYN_OK;
+    if ((s->format != TYN_FORMAT_NONE && s->format != TYN_DEPTH_F32 && s->format != TYN_DEPTH_U16) || !coding_fits(s))
+        return TYN_E_LIGHT;
+    if ((uintptr_t)s->depth % (uintptr_t)bytes || s->stride % bytes)
+        return TYN_E_LIGHT;
+    if (s->stride && (s->stride < 0 ? -s->stride : s->stride) < (ptrdiff_t)s->size * bytes)
+        return TYN_E_LIGHT;
+    return s->size > limit || height > limit ? TYN_E_LIMIT : TYN_OK;
 }
 
 static tyn_status check_light(const tyn_light *l, int32_t shadow_limit, int32_t map_limit)

@@ -26,4 +26,23 @@ tyn_status tyni_check_display(const tyn_display *display);
 int tyni_check_finite(const float *v, int32_t n);
 int tyni_check_colour(const float v[3]);
 
+/* The stored values of a range's ends, of which 0, 0 means 0, 1; 0 where they are too close together, or too large, to compute
+ * with. */
+int tyni_check_range(float at_near, float at_far, float ends[2]);
+
+/* Rows of a shadow map, and bytes of a texel. */
+static inline int32_t tyni_shadow_height(const tyn_shadow *shadow)
+{
+    return shadow->height ? shadow->height : shadow->size;
+}
+static inline int32_t tyni_shadow_bytes(const tyn_shadow *shadow)
+{
+    return shadow->format == TYN_DEPTH_U16 ? 2 : 4;
+}
+/* w does not depend on the place. */
+static inline int tyni_shadow_parallel(const tyn_shadow *shadow)
+{
+    return shadow->matrix[12] == 0.0f && shadow->matrix[13] == 0.0f && shadow->matrix[14] == 0.0f;
+}
+
 #endif

@@ -61,8 +61,8 @@ static int outside(const tyni_view *view, const tyni_lamp *lamp, int32_t x, int3
     for (int32_t i = 0; i < lamp->map_count; i++) {
         const tyni_map *map = &lamp->maps[i];
         float u = tyni_vec_dot(map->u.v, p) + map->u.c, v = tyni_vec_dot(map->v.v, p) + map->v.c;
-        float w = tyni_vec_dot(map->w.v, p) + map->w.c, size = (float)map->size;
-        if (w > 0.0f && u >= 0.0f && v >= 0.0f && u <= w * size && v <= w * size)
+        float w = tyni_vec_dot(map->w.v, p) + map->w.c, width = (float)map->texels.width, height = (float)map->texels.height;
+        if (w > 0.0f && u >= 0.0f && v >= 0.0f && u <= w * width && v <= w * height)
             return 0;
     }
     return 1;

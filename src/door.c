@@ -12,14 +12,6 @@ static float full_scale(tyn_format format)
     return format == TYN_DEPTH_U16 ? 65535.0f : format == TYN_DEPTH_U24 ? 16777215.0f : 1.0f;
 }
 
-/* The ends of a range, of which 0, 0 means 0, 1; 0 where they are too close together, or too large, to compute with. */
-static int range(float at_near, float at_far, float ends[2])
-{
-    ends[0] = at_near;
-    ends[1] = at_near == 0.0f && at_far == 0.0f ? 1.0f : at_far;
-    return tyni_absf(at_near) <= 1e6f && tyni_absf(at_far) <= 1e6f && tyni_absf(ends[1] - ends[0]) >= 1e-6f;
-}
-
 static void planes(const tyn_depth_coding *coding, const tyn_camera *camera, float depth[2])
 {
     depth[0] = coding->near_depth == 0.0f ? camera->near_depth : coding->near_depth;
@@ -37,7 +29,7 @@ tyn_status tyni_door_check(const tyn_depth_coding *coding, const tyn_camera *cam
         return TYN_OK;
     planes(coding, camera, depth);
     /* an infinite far plane is one: 1 / far is 0 */
-    if (!range(coding->at_near, coding->at_far, ends) || !(depth[0] >= 1e-20f) || !(depth[0] < depth[1]))
+    if (!tyni_check_range(coding->at_near, coding->at_far, ends) || !(depth[0] >= 1e-20f) || !(depth[0] < depth[1]))
         return TYN_E_IMAGE;
     return TYN_OK;
 }
@@ -47,7 +39,7 @@ tyn_status tyni_door_check(const tyn_depth_coding *coding, const tyn_camera *cam
 static void open_projected(tyni_door *door, const tyn_depth_coding *coding, const tyn_camera *camera)
 {
     float ends[2], depth[2], unit = full_scale(door->image->format);
-    (void)range(coding->at_near, coding->at_far, ends);
+    (void)tyni_check_range(coding->at_near, coding->at_far, ends);
     planes(coding, camera, depth);
     if (door->parallel) {
         door->base = depth[1];
@@ -130,4 +122,73 @@ const float *tyni_door_row(const tyni_door *door, int32_t x, int32_t y, int32_t 
     for (int32_t i = 0; i < count; i++)
         room[i] = tyni_door_depth(door, x + i, y);
     return room;
+}
+
+/* ---- shadow maps --------------------------------------------------------------------------------------------------- */
+
+/* A bias changes z by z' = (z - a) * share + a under a perspective, whose z is a + b / w, and by a constant in parallel. As
+ * share and loss: z' = z * share - loss. */
+static void bias_of(const tyn_shadow *shadow, const float z[4], float bias, float *share, float *loss)
+{
+    const float *m = shadow->matrix;
+    tyni_vec3 u = tyni_vec_load(m), v = tyni_vec_load(m + 4), w = tyni_vec_load(m + 12), zv = tyni_vec_load(z);
+    float width = (float)shadow->size, height = (float)tyni_shadow_height(shadow);
+    *share = 1.0f;
+    *loss = 0.0f;
+    if (bias <= 0.0f)
+        return;
+    if (tyni_shadow_parallel(shadow)) {
+        /* along the way in which u and v do not change */
+        tyni_vec3 way = tyni_vec_normalise(tyni_vec_cross(u, v));
+        float texel = tyni_absf(m[15]) / tyni_minf(tyni_vec_length(u) * width, tyni_vec_length(v) * height);
+        *loss = bias * texel * tyni_absf(tyni_vec_dot(zv, way) / m[15]);
+    } else {
+        float length2 = tyni_vec_dot(w, w), a = tyni_vec_dot(zv, w) / length2, step;
+        tyni_vec3 side_u = tyni_vec_mad(u, -tyni_vec_dot(u, w) / length2, w);
+        tyni_vec3 side_v = tyni_vec_mad(v, -tyni_vec_dot(v, w) / length2, w);
+        /* a texel's width over its distance */
+        step = bias * tyni_vec_length(w) / tyni_minf(tyni_vec_length(side_u) * width, tyni_vec_length(side_v) * height);
+        *share = 1.0f / (1.0f + step);
+        *loss = -a * step * *share;
+    }
+    if (!(*share > 0.0f) || !tyni_finite(*loss)) { /* a matrix of no use */
+        *share = 1.0f;
+        *loss = 0.0f;
+    }
+}
+
+void tyni_door_map(tyni_texels *t, float z[4], const tyn_shadow *shadow, float bias)
+{
+    const float *m = shadow->matrix;
+    float ends[2] = {1.0f, 0.0f}, unit, share, loss;
+    t->pixels = shadow->depth;
+    t->width = shadow->size;
+    t->height = tyni_shadow_height(shadow);
+    t->bytes = tyni_shadow_bytes(shadow);
+    t->pitch = shadow->stride ? shadow->stride : (ptrdiff_t)t->width * t->bytes;
+    t->inverse = shadow->coding == TYN_MAP_LINEAR && !tyni_shadow_parallel(shadow);
+    t->limit = 0.0f;
+    /* stored steps in one of z */
+    unit =
+        shadow->coding == TYN_MAP_LINEAR ? 1.0f / (shadow->scale == 0.0f ? 1.0f : shadow->scale) : full_scale(shadow->format);
+    if (t->inverse) {
+        for (int32_t i = 0; i < 4; i++)
+            z[i] = i == 3 ? 1.0f : 0.0f; /* depth is 1 / w */
+        bias_of(shadow, z, bias, &share, &loss);
+        t->end = 0.0f;
+        t->step = 1.0f / (unit * share);
+        t->limit = shadow->at_far > 0.0f ? shadow->at_far / share : 3e38f;
+        if (shadow->format == TYN_DEPTH_U16)
+            t->limit = tyni_minf(t->limit, 65535.0f * t->step);
+        return;
+    }
+    if (shadow->coding != TYN_MAP_REVERSED)
+        (void)tyni_check_range(shadow->at_near, shadow->at_far, ends);
+    /* z is measured from the far end and rises towards the near one */
+    t->step = 1.0f / (ends[0] - ends[1]);
+    for (int32_t i = 0; i < 4; i++)
+        z[i] = (m[8 + i] - ends[1] * m[12 + i]) * t->step;
+    bias_of(shadow, z, bias, &share, &loss);
+    t->step *= share / unit;
+    t->end = ends[1] * unit + loss / t->step;
 }

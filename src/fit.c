@@ -325,7 +325,7 @@ void tyni_fit_directional(float matrix[16], const tyn_light *light, const tyn_ca
     }
     best = smallest(&seen);
     side(matrix, &f, &seen, best, light->shadow.size);
-    side(matrix + 4, &f, &seen, best + TURNS / 2, light->shadow.size);
+    side(matrix + 4, &f, &seen, best + TURNS / 2, tyni_shadow_height(&light->shadow));
     rim = tyni_maxf((z1 - z0) * 1e-3f, 1e-6f);
     row(matrix + 8, f.d, z1 + rim, -1.0f / (z1 - z0 + 2.0f * rim), f.view.position);
     matrix[12] = matrix[13] = matrix[14] = 0.0f;
@@ -371,7 +371,8 @@ void tyni_fit_spot(float matrix[16], const tyn_light *light, const tyn_camera *c
     if (light->texture_count) /* its square is the slide's */
         tyni_slide_axes(f.d, tyni_vec_load(light->up), &f.a, &f.b);
     tyni_num_sincos(0.5f * light->angle, &sine, &cosine);
-    frustum(matrix, light->position, f.d, f.a, f.b, sine / cosine, light->shadow.size, farthest(light, camera, casters));
+    frustum(matrix, light->position, f.d, f.a, f.b, sine / cosine,
+            tyni_mini(light->shadow.size, tyni_shadow_height(&light->shadow)), farthest(light, camera, casters));
 }
 
 void tyni_fit_face(float matrix[16], const float position[3], int32_t face, float reach, int32_t texels)

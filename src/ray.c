@@ -41,7 +41,8 @@ static int32_t colour_parts(const meter *m, float ta, float tb)
             const tyni_map *map = &lamp->maps[i - lamp->slide_count];
             if (!map->tint)
                 continue;
-            scale = (float)tyni_maxi(map->tint->width, map->tint->height) / (float)map->size;
+            scale =
+                (float)tyni_maxi(map->tint->width, map->tint->height) / (float)tyni_mini(map->texels.width, map->texels.height);
         }
         if (!(wa > 0.0f && wb > 0.0f)) {
             texels = 4096.0f; /* from one face of a cube to another */
@@ -166,7 +167,7 @@ typedef struct track {
 static int track_begin(track *k, const tyni_map *map, tyni_vec3 v, const float part[2])
 {
     line lu = along(&map->u, v), lv = along(&map->v, v), lz = along(&map->z, v), lw = along(&map->w, v), edge;
-    float size = (float)map->size, u[2], y[2], z[2];
+    float width = (float)map->texels.width, height = (float)map->texels.height, u[2], y[2], z[2];
     k->t[0] = part[0];
     k->t[1] = part[1];
     edge.c = lw.c - 1e-6f;
@@ -174,19 +175,19 @@ static int track_begin(track *k, const tyni_map *map, tyni_vec3 v, const float p
     line_clip(edge, k->t);
     line_clip(lu, k->t);
     line_clip(lv, k->t);
-    edge.c = size * lw.c - lu.c;
-    edge.d = size * lw.d - lu.d;
+    edge.c = width * lw.c - lu.c;
+    edge.d = width * lw.d - lu.d;
     line_clip(edge, k->t);
-    edge.c = size * lw.c - lv.c;
-    edge.d = size * lw.d - lv.d;
+    edge.c = height * lw.c - lv.c;
+    edge.d = height * lw.d - lv.d;
     line_clip(edge, k->t);
     if (!(k->t[0] < k->t[1]))
         return 0;
     for (int32_t i = 0; i < 2; i++) {
         float w = tyni_maxf(line_at(lw, k->t[i]), 1e-9f);
         k->w[i] = w;
-        u[i] = tyni_clampf(line_at(lu, k->t[i]) / w, 0.0f, size);
-        y[i] = tyni_clampf(line_at(lv, k->t[i]) / w, 0.0f, size);
+        u[i] = tyni_clampf(line_at(lu, k->t[i]) / w, 0.0f, width);
+        y[i] = tyni_clampf(line_at(lv, k->t[i]) / w, 0.0f, height);
         z[i] = line_at(lz, k->t[i]) / w;
     }
     k->u = u[0];
@@ -227,14 +228,14 @@ static axis axis_begin(float x, float dx, int32_t size)
 
 static void walk_texels(const tyni_map *map, const track *k, meter *m)
 {
-    axis u = axis_begin(k->u, k->du, map->size), v = axis_begin(k->v, k->dv, map->size);
+    const tyni_texels *texels = &map->texels;
+    axis u = axis_begin(k->u, k->du, texels->width), v = axis_begin(k->v, k->dv, texels->height);
     float s = 0.0f, za = k->z;
-    /* every step leaves a texel for good: at most 2 * size of them, whatever rounding does */
-    for (int32_t left = 2 * map->size + 2; left > 0; left--) {
-        float depth = map->depth[(ptrdiff_t)v.texel * map->size + u.texel];
+    /* every step leaves a texel for good: at most both sides of them, whatever rounding does */
+    for (int32_t left = texels->width + texels->height + 2; left > 0; left--) {
+        float depth = tyni_texels_at(texels, u.texel, v.texel);
         float end = tyni_minf(tyni_minf(u.next, v.next), 1.0f), zb = k->z + end * k->dz;
         int open = !(depth > 0.0f), lit_a, lit_b;
-        depth = tyni_minf(depth, 1.0f);
         lit_a = open || za >= depth;
         lit_b = open || zb >= depth;
         if ((lit_a != m->outside) != m->on)
@@ -250,7 +251,7 @@ static void walk_texels(const tyni_map *map, const track *k, meter *m)
             v.texel += v.step;
             v.next += v.pitch;
         }
-        if ((uint32_t)u.texel >= (uint32_t)map->size || (uint32_t)v.texel >= (uint32_t)map->size)
+        if ((uint32_t)u.texel >= (uint32_t)texels->width || (uint32_t)v.texel >= (uint32_t)texels->height)
             return;
         s = end;
         za = zb;
@@ -390,10 +391,10 @@ static int point_lit(const tyni_lamp *lamp, tyni_vec3 v, float t)
             continue;
         x = line_at(along(&map->u, v), t) / w;
         y = line_at(along(&map->v, v), t) / w;
-        if (!(x >= 0.0f && y >= 0.0f && x < (float)map->size && y < (float)map->size))
+        if (!(x >= 0.0f && y >= 0.0f && x < (float)map->texels.width && y < (float)map->texels.height))
             continue;
-        depth = map->depth[(ptrdiff_t)(int32_t)y * map->size + (int32_t)x];
-        return !(depth > 0.0f) || line_at(along(&map->z, v), t) / w >= tyni_minf(depth, 1.0f);
+        depth = tyni_texels_at(&map->texels, (int32_t)x, (int32_t)y);
+        return !(depth > 0.0f) || line_at(along(&map->z, v), t) / w >= depth;
     }
     return lamp->outside;
 }

@@ -37,20 +37,21 @@ static void fan_clip(fan *f, float fn, float fd)
 static int fan_on_map(fan *f, const tyni_map *map, const tyni_slice *slice, float u[2], float v[2])
 {
     float un = tyni_vec_dot(map->u.v, slice->ex), vn = tyni_vec_dot(map->v.v, slice->ex);
-    float wn = tyni_vec_dot(map->w.v, slice->ex), wd = map->w.c, size = (float)map->size;
+    float wn = tyni_vec_dot(map->w.v, slice->ex), wd = map->w.c;
+    float width = (float)map->texels.width, height = (float)map->texels.height;
     fan_clip(f, wn, wd - 1e-6f * (tyni_absf(wn) + tyni_absf(wd)));
     fan_clip(f, un, map->u.c);
-    fan_clip(f, size * wn - un, size * wd - map->u.c);
+    fan_clip(f, width * wn - un, width * wd - map->u.c);
     fan_clip(f, vn, map->v.c);
-    fan_clip(f, size * wn - vn, size * wd - map->v.c);
+    fan_clip(f, height * wn - vn, height * wd - map->v.c);
     if (fan_empty(f))
         return 0;
     for (int32_t i = 0; i < 2; i++) {
         float w = f->n[i] * wn + f->d[i] * wd;
         if (!(w > 0.0f))
             return 0;
-        u[i] = tyni_clampf((f->n[i] * un + f->d[i] * map->u.c) / w, 0.0f, size);
-        v[i] = tyni_clampf((f->n[i] * vn + f->d[i] * map->v.c) / w, 0.0f, size);
+        u[i] = tyni_clampf((f->n[i] * un + f->d[i] * map->u.c) / w, 0.0f, width);
+        v[i] = tyni_clampf((f->n[i] * vn + f->d[i] * map->v.c) / w, 0.0f, height);
     }
     return 1;
 }
@@ -132,25 +133,27 @@ static uint16_t column(const ends *e, float g, float z)
 {
     if (!(z > 0.0f))
         return 65535; /* nothing there: lit */
-    z = tyni_minf(z, 1.0f);
     return threshold_of(e->g[0] * g + e->z[0] * z + e->c[0], e->g[1] * g + e->z[1] * z + e->c[1]);
 }
 
 static void fill(tyni_piece *piece, uint16_t *threshold, float *split, const tyni_map *map, const course *c, const ends *e)
 {
-    int32_t size = map->size, first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
-    ptrdiff_t step = c->across ? 1 : size, pitch = c->across ? size : 1;
-    const float *texel = map->depth + step * first;
+    const tyni_texels *t = &map->texels;
+    int32_t size = c->across ? t->width : t->height, sides = c->across ? t->height : t->width;
+    int32_t first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
+    ptrdiff_t step = c->across ? t->bytes : t->pitch, pitch = c->across ? t->pitch : t->bytes;
+    const uint8_t *texel = t->pixels + step * first;
     piece->steps = tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
     step = c->sign > 0.0f ? step : -step;
     for (int32_t k = 0; k < piece->steps; k++, texel += step) {
         float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * (float)(k + 1), cut = 1.0f;
-        int32_t a = tyni_clampi(tyni_floori(from), 0, size - 1), b = tyni_clampi(tyni_floori(to), 0, size - 1);
+        int32_t a = tyni_clampi(tyni_floori(from), 0, sides - 1), b = tyni_clampi(tyni_floori(to), 0, sides - 1);
         if (a != b) /* |slope| <= 1: they are neighbours */
             cut = tyni_clampf(((float)tyni_maxi(a, b) - from) / c->slope, 0.0f, 1.0f);
         split[k] = cut;
-        threshold[2 * k] = column(e, (float)k + 0.5f * cut, texel[a * pitch]);
-        threshold[2 * k + 1] = a != b ? column(e, (float)k + 0.5f + 0.5f * cut, texel[b * pitch]) : threshold[2 * k];
+        threshold[2 * k] = column(e, (float)k + 0.5f * cut, tyni_texels_z(t, texel + a * pitch));
+        threshold[2 * k + 1] =
+            a != b ? column(e, (float)k + 0.5f + 0.5f * cut, tyni_texels_z(t, texel + b * pitch)) : threshold[2 * k];
     }
 }
 

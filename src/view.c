@@ -57,7 +57,7 @@ static tyni_form form(const float row[4], const tyni_view *view, float scale)
 static void shadow_map(tyni_lamp *lamp, const tyn_shadow *shadow, const tyni_view *view)
 {
     tyni_map *map = &lamp->maps[lamp->map_count];
-    float texels = (float)shadow->size, size = 0.0f, scale;
+    float size = 0.0f, scale, z[4];
     if (!shadow->depth)
         return;
     /* A common factor of the matrix is free; make w's row of the order of 1. */
@@ -66,14 +66,13 @@ static void shadow_map(tyni_lamp *lamp, const tyn_shadow *shadow, const tyni_vie
     if (!(size > 0.0f))
         return;
     scale = 1.0f / size;
-    map->u = form(shadow->matrix, view, texels * scale);
-    map->v = form(shadow->matrix + 4, view, texels * scale);
-    map->z = form(shadow->matrix + 8, view, scale);
+    tyni_door_map(&map->texels, z, shadow, shadow->bias);
+    map->u = form(shadow->matrix, view, (float)map->texels.width * scale);
+    map->v = form(shadow->matrix + 4, view, (float)map->texels.height * scale);
+    map->z = form(z, view, scale);
     map->w = form(shadow->matrix + 12, view, scale);
-    map->depth = shadow->depth;
     map->tint = shadow->tint;
     lamp->coloured |= shadow->tint != NULL;
-    map->size = shadow->size;
     lamp->map_count++;
 }
 
@@ -180,15 +179,16 @@ static void tint(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3])
 {
     for (int32_t i = 0; i < lamp->map_count; i++) {
         const tyni_map *map = &lamp->maps[i];
-        float w = tyni_form_at(&map->w, p), u, v, size = (float)map->size, own[3];
+        float w = tyni_form_at(&map->w, p), u, v, own[3];
+        float width = (float)map->texels.width, height = (float)map->texels.height;
         if (!(w > 0.0f))
             continue;
         u = tyni_form_at(&map->u, p) / w;
         v = tyni_form_at(&map->v, p) / w;
-        if (!(u >= 0.0f && v >= 0.0f && u <= size && v <= size))
+        if (!(u >= 0.0f && v >= 0.0f && u <= width && v <= height))
             continue;
         if (map->tint) {
-            tyni_slide_sample(map->tint, u / size * (float)map->tint->width, v / size * (float)map->tint->height, own);
+            tyni_slide_sample(map->tint, u / width * (float)map->tint->width, v / height * (float)map->tint->height, own);
             for (int32_t c = 0; c < 3; c++)
                 rgb[c] *= own[c];
         }

@@ -4,6 +4,7 @@
 #ifndef TYNI_VIEW_H
 #define TYNI_VIEW_H
 
+#include "door.h"
 #include "slide.h"
 #include "vec.h"
 
@@ -36,8 +37,7 @@ static inline float tyni_view_depth(const tyni_view *view, float depth)
 
 /* A shadow map as the camera sees it: u and v in texels. */
 typedef struct tyni_map {
-    const float *depth;
-    int32_t size;
+    tyni_texels texels;
     tyni_form u, v, z, w;
     const tyn_image *tint; /* NULL: none */
 } tyni_map;

@@ -15,7 +15,7 @@ typedef char size_of_tally[sizeof(tyni_raster_tally) == 64 ? 1 : -1];
 typedef char size_of_count[sizeof(tyni_jobs_count) == 64 ? 1 : -1];
 typedef char size_of_lamp[sizeof(tyni_raster_lamp) <= 64 ? 1 : -1];
 typedef char size_of_slide[sizeof(tyni_slide) <= 64 ? 1 : -1];
-typedef char size_of_map[sizeof(tyni_raster_map) == 64 ? 1 : -1];
+typedef char size_of_map[sizeof(tyni_raster_map) <= 128 ? 1 : -1];
 
 static tyn_status resolve(tyn_raster_config *out, const tyn_raster_config *config)
 {
@@ -41,7 +41,7 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
     tyni_raster_tally *tallies = tyni_arena_take(arena, workers, sizeof *tallies);
     tyni_jobs_count *counts = tyni_arena_take(arena, workers, sizeof *counts);
     tyni_raster_lamp *lamps = tyni_arena_take(arena, TYN_MAX_LIGHTS, 64);
-    tyni_raster_map *maps = tyni_arena_take(arena, (size_t)TYN_MAX_LIGHTS * TYN_MAX_MAPS, sizeof *maps);
+    tyni_raster_map *maps = tyni_arena_take(arena, (size_t)TYN_MAX_LIGHTS * TYN_MAX_MAPS, 128);
     tyni_slide *slides = tyni_arena_take(arena, TYN_MAX_LIGHTS * TYNI_RASTER_SLIDES, 64);
     if (raster) {
         raster->width = config->width;
@@ -290,16 +290,21 @@ static tyn_status check_shadow(const tyn_raster *raster, const tyn_shadow *shado
 {
     const float *m;
     tyn_status status;
+    int32_t height;
     if (!raster || !shadow || !depth)
         return TYN_E_NULL;
     m = shadow->matrix;
+    height = tyni_shadow_height(shadow);
     if (shadow->size < 1 || shadow->size > TYN_MAX_SHADOW || !tyni_check_finite(m, 16) || !invertible(m))
+        return TYN_E_LIGHT;
+    if (height < 1 || height > TYN_MAX_SHADOW || shadow->coding != TYN_MAP_REVERSED || shadow->stride ||
+        (shadow->format != TYN_FORMAT_NONE && shadow->format != TYN_DEPTH_F32))
         return TYN_E_LIGHT;
     if (m[12] == 0.0f && m[13] == 0.0f && m[14] == 0.0f && m[15] < 0.0f) /* nothing is in front of this light */
         return TYN_E_LIGHT;
     if ((uintptr_t)depth % sizeof *depth)
         return TYN_E_ALIGN;
-    if (shadow->size > raster->width || shadow->size > raster->height)
+    if (shadow->size > raster->width || height > raster->height)
         return TYN_E_LIMIT;
     status = check_meshes(meshes, mesh_count);
     return status == TYN_OK ? tyni_jobs_check(executor, raster->workers) : status;

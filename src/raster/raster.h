@@ -13,6 +13,7 @@
 
 #include "base.h"
 #include "jobs.h"
+#include "door.h"
 #include "slide.h"
 #include "vec.h"
 
@@ -112,7 +113,8 @@ typedef struct tyni_raster_map {
     float apex;             /* perspective: Z at the apex */
     float bias, bias_z;     /* bias of the compare is |bias - bias_z * z| */
     int32_t parallel;
-    uint32_t pad;
+    tyni_texels texels;
+    float z[4]; /* row of the matrix for the depths that they hold */
 } tyni_raster_map;
 
 /* The same of a light. */

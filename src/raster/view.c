@@ -1,6 +1,7 @@
 /* view.c - a camera or a shadow map as the view that triangles are set up for. See raster.h. */
 #include "raster/raster.h"
 
+#include "check.h"
 #include "raster/pair.h"
 #include "vec.h"
 
@@ -67,7 +68,8 @@ void tyni_raster_view_shadow(tyni_raster_view *view, const tyn_shadow *shadow)
     for (int32_t i = 0; i < 4; i++)
         set_row(view, i, m + 4 * i, m[4 * i + 3]);
     set_window(view, 0, 0.0f, 1.0f, shadow->size);
-    set_window(view, 1, 0.0f, 1.0f, shadow->size);
+    set_window(view, 1, 0.0f, 1.0f, tyni_shadow_height(shadow));
     view->clip = tyni_maxf(least_w(m), 1e-30f);
-    view->width = view->height = shadow->size;
+    view->width = shadow->size;
+    view->height = tyni_shadow_height(shadow);
 }
