@@ -111,8 +111,15 @@ int32_t tyn_format_bytes(tyn_format format);
 
 /* ---- camera -------------------------------------------------------------------------------------------------------- */
 
-/* A pinhole. The pixel plane is the window left .. right, bottom .. top at depth 1; it need not be centred. */
+typedef enum tyn_camera_kind {
+    TYN_CAMERA_PERSPECTIVE = 0,
+    TYN_CAMERA_ORTHOGRAPHIC = 1 /* all view rays along `forward`; for tyn_render and the fits, not for the rasterizer */
+} tyn_camera_kind;
+
+/* The pixel plane is the window left .. right, bottom .. top: at depth 1 (perspective) or in metres (orthographic). It need not
+ * be centred. A viewport inside a larger buffer: images that point at its first pixel, with the buffer's stride. */
 typedef struct tyn_camera {
+    tyn_camera_kind kind;
     float position[3];
     float right[3]; /* right, up, forward: of length 1 and at right angles, within 1e-3 */
     float up[3];
@@ -127,6 +134,17 @@ typedef struct tyn_camera {
  * target at position, up parallel to the view), TYN_E_NULL. */
 tyn_status tyn_camera_look(tyn_camera *camera, const float position[3], const float target[3], const float up[3], float fov_y,
                            float near_depth, float far_depth, int32_t width, int32_t height);
+
+/* Sets all of *camera from an engine's matrices, row-major for column vectors as everywhere (transpose what others hold).
+ * `view` takes world to view space by a rotation and a shift; there the camera looks along -Z, +X is right and +Y up.
+ * `projection` takes view space to clip space: a perspective one, off-centre or not, whose w is in proportion to -z, or an
+ * orthographic one; +X in clip space is right in the picture, and Y may run either way (a negative scale of y, as for Vulkan,
+ * is taken to turn it down). Its third row, the depth, is not read: -1 .. 1 or 0 .. 1, reversed or infinite are all the same
+ * here, and so the nearest and farthest depth are given in metres, 0 < near < far. TYN_E_CAMERA: not finite, not such matrices
+ * (view scaled, sheared, mirrored or looking along +Z; projection with a turn or mirrored in x), or near and far out of range.
+ * TYN_E_NULL. */
+tyn_status tyn_camera_from_matrices(tyn_camera *camera, const float view[16], const float projection[16], float near_depth,
+                                    float far_depth);
 
 /* ---- medium -------------------------------------------------------------------------------------------------------- */
 
@@ -150,6 +168,21 @@ typedef struct tyn_medium {
 /* IVB's air at sea level (IVB section 6.8): media[0] Rayleigh, media[1] haze with g = 0.76, both multiplied by `scale`
  * (1 is the earth's air: shafts over kilometres. Small scenes want 100 and more). TYN_E_NULL, TYN_E_MEDIUM (scale < 0). */
 tyn_status tyn_medium_air(tyn_medium media[2], float scale);
+
+/* Air by what a weather report says. media[0] is Rayleigh, media[1] haze (Henyey and Greenstein, g = 0.76); nothing absorbs.
+ *   turbidity:  >= 1, how much the air with its haze scatters relative to its molecules alone, at 550 nm: 1 pure air, 2 to 3
+ *               clear, 10 hazy, above 30 fog. (Preetham et al. 1999 have it for a whole column of air.)
+ *   visibility: metres, the meteorological range: where a black thing keeps 2 % contrast against the sky. By Koschmieder's law
+ *               the extinction at 550 nm is ln(50) / visibility = 3.912 / visibility; 0: the earth's air at sea level, haze
+ *               alone adds to it.
+ *   angstrom:   0 .. 4, Angstrom's exponent of the haze: its scattering goes with wavelength to the power of -angstrom.
+ *               0: grey, fog; 1.3: the usual haze, bluish (Angstrom 1929).
+ * With R = (5.8, 13.5, 33.1) 1e-6 / m at 680, 550 and 440 nm and E = 3.912 / visibility, or R(550) turbidity with visibility 0:
+ *   media[0].scatter = E / turbidity * R / R(550)
+ *   media[1].scatter = E (turbidity - 1) / turbidity * (550 nm / wavelength)^angstrom
+ * A small scene wants a small visibility: 300 m shows shafts in a street, 50 m in a hall.
+ * TYN_E_NULL, TYN_E_MEDIUM (out of range, or a visibility so small that the coefficients overflow). */
+tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibility, float angstrom);
 
 /* ---- light and its shadow map -------------------------------------------------------------------------------------- */
 
@@ -234,6 +267,28 @@ tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const floa
  * `more`. `reach`: distance beyond which nothing matters, > 0. Sizes, if set, give the faces a margin of two texels.
  * TYN_E_NULL, TYN_E_LIGHT. */
 tyn_status tyn_shadow_fit_cube(tyn_shadow faces[6], const float position[3], float reach);
+
+/* The matrix of a map for a directional light that does not crawl: when the camera moves or turns and the light does not, the
+ * map moves by whole texels over a grid that is fixed in the world, and a caster covers the same texels as before. Sets
+ * shadow->matrix and nothing else; shadow->size must be set, 16 .. TYN_MAX_SHADOW. For that the map is a square around a ball
+ * around all that the camera can see up to the depth `distance` (metres; 0 or beyond the far end: the far end), of constant
+ * size and at a constant angle: a texel is 1.3 to 3 times as wide as tyn_shadow_fit makes it, which turns the map, and more
+ * where there is a box of bounds. Casters nearer to the light than the map's near end must be clamped to it when it is rendered
+ * (tyn_raster_shadow does). The grid holds while the camera is within 4 million texels of the origin.
+ * TYN_E_NULL, TYN_E_CAMERA (also a distance that is negative or not beyond the near end), TYN_E_LIGHT (kind, direction, size).
+ */
+tyn_status tyn_shadow_snap(tyn_shadow *shadow, const tyn_light *light, const tyn_camera *camera, float distance);
+
+/* The matrices of `count` maps, 1 .. TYN_MAX_MAPS, finest first, for a directional light: cascades[0] is its `shadow`,
+ * cascades[1] .. its `more`. Cascade i covers what the camera can see from itself to the depth
+ *     lambda near (distance / near)^x + (1 - lambda) (near + (distance - near) x),   x = (i + 1) / count
+ * (Zhang et al. 2006): lambda 0 .. 1, from equal lengths to equal ratios; 0.5 to 0.8 serve most. `distance` as in
+ * tyn_shadow_snap. Each is fitted as by tyn_shadow_fit with the bounds (both may be NULL; sizes, if set, give margins) or, with
+ * `snapped` not 0, as by tyn_shadow_snap (all sizes must be set; bounds are not used). Sets the matrices and nothing else.
+ * TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MESH (bounds), TYN_E_LIMIT (count), TYN_E_CONFIG (lambda). */
+tyn_status tyn_shadow_fit_cascades(tyn_shadow *cascades, int32_t count, const tyn_light *light, const tyn_camera *camera,
+                                   const float bounds_min[3], const float bounds_max[3], float distance, float lambda,
+                                   int32_t snapped);
 
 struct tyn_mesh;
 
@@ -431,6 +486,31 @@ typedef struct tyn_frame {
 /* Renders L = exp(-extinction s) colour + L_scat into target. All images have the depth image's size, at most the config's.
  * TYN_E_NULL, TYN_E_IMAGE, TYN_E_ALIGN, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MEDIUM, TYN_E_DISPLAY, TYN_E_LIMIT, TYN_E_EXECUTOR. */
 tyn_status tyn_render(tyn_context *context, const tyn_frame *frame);
+
+/* A point in the picture's space: pixel coordinates as in "Conventions" (the first pixel's centre is 0.5, 0.5; fractions, and
+ * places beside the picture, are welcome) and view-space depth in metres, clamped to 0 .. far; infinity and NaN mean far. */
+typedef struct tyn_query_point {
+    float x, y;
+    float depth;
+} tyn_query_point;
+
+typedef struct tyn_query_result {
+    float scatter[3];       /* L_scat from the camera to the point: radiance, without exposure */
+    float transmittance[3]; /* 0 .. 1: what is left of the radiance of something at the point */
+} tyn_query_result;
+
+/* What the medium does between the camera and each of `count` points: for glass, smoke, particles, sprites, all that a depth
+ * buffer does not hold. Composite as tyn_render does: transmittance * radiance + scatter, times the coverage. Something
+ * transparent is drawn over a picture that is finished already: with coverage a the pixel becomes
+ *     (1 - a) pixel + a (transmittance * radiance + scatter).
+ * The frame may be the very one given to tyn_render: camera, lights, media, the art controls and the executor count, and of
+ * `depth` the width and height alone (the image's pixels may be NULL). The rest is not looked at. Each point is computed by an
+ * exact ray of its own, as TYN_METHOD_MARCH has it, and costs as much. It needs no context; several calls may run at once.
+ * Jobs are 64 points each, for each light; an executor may have up to TYN_MAX_WORKERS workers. Up to TYN_MAX_LIGHTS lights.
+ * A point with x or y not finite gets scatter 0 and transmittance 1. `results` must not overlap `points`.
+ * TYN_E_NULL (points and results may be NULL with count 0), TYN_E_LIMIT (count < 0, too many lights or maps), TYN_E_ALIGN,
+ * TYN_E_IMAGE (size), TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MEDIUM, TYN_E_EXECUTOR. */
+tyn_status tyn_query(const tyn_frame *frame, const tyn_query_point *points, tyn_query_result *results, int32_t count);
 
 /* ---- level (a): the rasterizer ------------------------------------------------------------------------------------- */
 

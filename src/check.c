@@ -75,6 +75,8 @@ tyn_status tyni_check_image(const tyn_image *image, uint32_t formats)
 
 tyn_status tyni_check_camera(const tyn_camera *c)
 {
+    if ((uint32_t)c->kind > (uint32_t)TYN_CAMERA_ORTHOGRAPHIC)
+        return TYN_E_CAMERA;
     if (!tyni_check_finite(c->position, 3) || !unit(c->right) || !unit(c->up) || !unit(c->forward))
         return TYN_E_CAMERA;
     if (tyni_absf(dot(c->right, c->up)) > 2e-3f || tyni_absf(dot(c->up, c->forward)) > 2e-3f ||
@@ -173,6 +175,17 @@ tyn_status tyni_check_media(const tyn_medium *media, int32_t count)
             return TYN_E_MEDIUM;
     }
     return TYN_OK;
+}
+
+tyn_status tyni_check_bounds(const float low[3], const float high[3])
+{
+    if (!low != !high)
+        return TYN_E_NULL;
+    if (!low)
+        return TYN_OK;
+    if (!tyni_check_finite(low, 3) || !tyni_check_finite(high, 3))
+        return TYN_E_MESH;
+    return low[0] > high[0] || low[1] > high[1] || low[2] > high[2] ? TYN_E_MESH : TYN_OK;
 }
 
 tyn_status tyni_check_display(const tyn_display *d)

@@ -22,6 +22,9 @@ tyn_status tyni_check_lights(const tyn_light *lights, int32_t count, int32_t sha
 tyn_status tyni_check_media(const tyn_medium *media, int32_t count);
 tyn_status tyni_check_display(const tyn_display *display);
 
+/* A box: both NULL (none) or finite and min <= max. TYN_E_NULL for one of the two, TYN_E_MESH. */
+tyn_status tyni_check_bounds(const float low[3], const float high[3]);
+
 /* All of n floats finite; and not below 0. */
 int tyni_check_finite(const float *v, int32_t n);
 int tyni_check_colour(const float v[3]);

@@ -56,8 +56,7 @@ static void paint_scatter(const tyni_view *view, const tyni_slices *slices, cons
 
 static int outside(const tyni_view *view, const tyni_lamp *lamp, int32_t x, int32_t y, float depth)
 {
-    tyni_vec3 d = tyni_view_direction(view, (float)x + 0.5f, (float)y + 0.5f);
-    tyni_vec3 p = tyni_vec_scale(d, tyni_view_depth(view, depth));
+    tyni_vec3 p = tyni_view_point(view, (float)x + 0.5f, (float)y + 0.5f, tyni_view_depth(view, depth));
     for (int32_t i = 0; i < lamp->map_count; i++) {
         const tyni_map *map = &lamp->maps[i];
         float u = tyni_vec_dot(map->u.v, p) + map->u.c, v = tyni_vec_dot(map->v.v, p) + map->v.c;

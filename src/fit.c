@@ -87,10 +87,11 @@ static float largest(const float low[3], const float high[3])
     return tyni_maxf(tyni_maxf(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
 }
 
-/* Narrows t[0] .. t[1] to where n . (t * v) >= c. */
-static void clip_plane(tyni_vec3 v, tyni_vec3 n, float c, float t[2])
+/* Narrows t[0] .. t[1] to where n . p >= c along a ray. */
+static void clip_plane(const tyni_sight *v, tyni_vec3 n, float c, float t[2])
 {
-    float rate = tyni_vec_dot(n, v);
+    float rate = tyni_vec_dot(n, v->d);
+    c -= tyni_vec_dot(n, v->o);
     if (rate > 1e-20f)
         t[0] = tyni_maxf(t[0], c / rate);
     else if (rate < -1e-20f)
@@ -117,11 +118,12 @@ static int shades(const fit *f, const tyni_vec3 p[3], float slack)
     for (int32_t y = 0; y < f->view.height; y += 2) {
         const float *row = tyni_image_row(f->depth, y);
         for (int32_t x = 0; x < f->view.width; x += 2) {
-            tyni_vec3 v = tyni_view_direction(&f->view, (float)x + 0.5f, (float)y + 0.5f);
-            float t[2] = {0.0f, tyni_view_depth(&f->view, row[x])};
-            clip_plane(v, n, tyni_vec_dot(n, p[0]) + slack, t);
+            tyni_sight v;
+            float length = tyni_view_sight(&f->view, (float)x + 0.5f, (float)y + 0.5f, &v);
+            float t[2] = {0.0f, tyni_view_depth(&f->view, row[x]) * length};
+            clip_plane(&v, n, tyni_vec_dot(n, p[0]) + slack, t);
             for (int32_t i = 0; i < 3; i++)
-                clip_plane(v, side[i], edge[i], t);
+                clip_plane(&v, side[i], edge[i], t);
             if (t[0] < t[1])
                 return 1;
         }
@@ -185,21 +187,15 @@ static int cast_all(extent *casters, const fit *f, const tyni_fit_casters *c, co
 }
 
 /* Narrows a ray's part t[0] .. t[1] to where the casters' box can shadow it. */
-static void clip_ray(const fit *f, tyni_vec3 v, float slack, const extent *casters, float t[2])
+static void clip_ray(const fit *f, const tyni_sight *v, float slack, const extent *casters, float t[2])
 {
-    const float d[3] = {f->d.x, f->d.y, f->d.z}, w[3] = {v.x, v.y, v.z};
+    const float d[3] = {f->d.x, f->d.y, f->d.z};
     for (int32_t i = 0; i < 3; i++) {
-        /* d > 0: only beyond the low side; d < 0: only below the high side */
-        float sign = d[i] > 0.0f ? 1.0f : -1.0f, rate = sign * w[i];
-        float edge = sign > 0.0f ? casters->box_low[i] - slack : -(casters->box_high[i] + slack);
-        if (d[i] == 0.0f)
-            continue;
-        if (rate > 1e-12f)
-            t[0] = tyni_maxf(t[0], edge / rate);
-        else if (rate < -1e-12f)
-            t[1] = tyni_minf(t[1], edge / rate);
-        else if (edge > 0.0f)
-            t[1] = t[0] - 1.0f;
+        tyni_vec3 n = tyni_vec(i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f);
+        if (d[i] > 0.0f) /* only beyond the low side */
+            clip_plane(v, n, casters->box_low[i] - slack, t);
+        else if (d[i] < 0.0f) /* only below the high side */
+            clip_plane(v, tyni_vec_scale(n, -1.0f), -(casters->box_high[i] + slack), t);
     }
 }
 
@@ -213,7 +209,7 @@ static float tile_depth(const fit *f, int32_t x, int32_t y, float low[3], float 
         const float *row = tyni_image_row(f->depth, y);
         for (int32_t i = x; i < x1; i++) {
             float depth = tyni_view_depth(&f->view, row[i]);
-            tyni_vec3 p = tyni_vec_scale(tyni_view_direction(&f->view, (float)i + 0.5f, (float)y + 0.5f), depth);
+            tyni_vec3 p = tyni_view_point(&f->view, (float)i + 0.5f, (float)y + 0.5f, depth);
             const float v[3] = {p.x, p.y, p.z};
             most = tyni_maxf(most, depth);
             for (int32_t k = 0; k < 3; k++) {
@@ -237,14 +233,15 @@ static void see(extent *seen, const fit *f, const extent *casters)
         for (int32_t x = 0; x < f->view.width; x += step_x) {
             float depth = f->depth ? tile_depth(f, x, y, low, high) : f->view.far_depth;
             for (int32_t i = 0; i < 4; i++) {
-                tyni_vec3 v = tyni_view_direction(&f->view, (float)(i & 1 ? x + step_x : x), (float)(i & 2 ? y + step_y : y));
-                float t[2] = {0.0f, depth};
+                tyni_sight v;
+                float length = tyni_view_sight(&f->view, (float)(i & 1 ? x + step_x : x), (float)(i & 2 ? y + step_y : y), &v);
+                float t[2] = {0.0f, depth * length};
                 if (casters)
-                    clip_ray(f, v, tile * depth, casters, t);
+                    clip_ray(f, &v, f->view.orthographic ? tile : tile * depth, casters, t);
                 if (t[0] > t[1])
                     continue;
-                extent_add(seen, f, tyni_vec_scale(v, t[0]));
-                extent_add(seen, f, tyni_vec_scale(v, t[1]));
+                extent_add(seen, f, tyni_sight_at(&v, t[0]));
+                extent_add(seen, f, tyni_sight_at(&v, t[1]));
             }
         }
     if (f->depth) {
@@ -253,13 +250,18 @@ static void see(extent *seen, const fit *f, const extent *casters)
     }
 }
 
-static void fit_begin(fit *f, const tyn_light *light, const tyn_camera *camera, const tyn_image *depth)
+void tyni_fit_axes(tyni_vec3 direction, tyni_vec3 *d, tyni_vec3 *a, tyni_vec3 *b)
 {
     tyni_vec3 other;
-    f->d = tyni_vec_normalise(tyni_vec_load(light->direction));
-    other = tyni_absf(f->d.y) < 0.9f ? tyni_vec(0.0f, 1.0f, 0.0f) : tyni_vec(1.0f, 0.0f, 0.0f);
-    f->a = tyni_vec_normalise(tyni_vec_cross(f->d, other));
-    f->b = tyni_vec_cross(f->a, f->d);
+    *d = tyni_vec_normalise(direction);
+    other = tyni_absf(d->y) < 0.9f ? tyni_vec(0.0f, 1.0f, 0.0f) : tyni_vec(1.0f, 0.0f, 0.0f);
+    *a = tyni_vec_normalise(tyni_vec_cross(*d, other));
+    *b = tyni_vec_cross(*a, *d);
+}
+
+static void fit_begin(fit *f, const tyn_light *light, const tyn_camera *camera, const tyn_image *depth)
+{
+    tyni_fit_axes(tyni_vec_load(light->direction), &f->d, &f->a, &f->b);
     for (int32_t i = 0; i < TURNS; i++)
         tyni_num_sincos((float)i * (TYNI_PI / (float)TURNS), &f->s[i], &f->c[i]);
     tyni_view_camera(&f->view, camera, depth ? depth->width : 1024, depth ? depth->height : 1024);

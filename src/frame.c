@@ -64,7 +64,7 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
 /* ---- slices -------------------------------------------------------------------------------------------------------- */
 
 /* Where the ray ends for this light: the surface, or the far side of a spot's cone. 0: no part of it is in the cone. */
-static int ray_range(const pass *p, tyni_vec3 v, float s, float *t0, float *t1)
+static int ray_range(const pass *p, const tyni_sight *v, float s, float *t0, float *t1)
 {
     *t0 = 0.0f;
     *t1 = tyni_art_reach(p->frame, s);
@@ -72,7 +72,8 @@ static int ray_range(const pass *p, tyni_vec3 v, float s, float *t0, float *t1)
 }
 
 /* Visibility of one ray in the kept channels. */
-static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, float at, tyn_stats *stats, float value[3])
+static void ray_value(const pass *p, const tyni_row *row, const tyni_sight *v, float s, float at, tyn_stats *stats,
+                      float value[3])
 {
     const tyni_medium *medium = &p->medium;
     tyni_integral it;
@@ -110,17 +111,21 @@ static void ray_value(const pass *p, const tyni_row *row, tyni_vec3 v, float s, 
 static void clamp_to_volume(const pass *p, const tyni_slice *slice, float *depth)
 {
     for (int32_t j = slice->first; j <= slice->last; j++) {
-        tyni_vec3 d = tyni_vec_mad(slice->a, tyni_slice_p(&p->slices, j), slice->b);
-        float length = tyni_vec_length(d), t0, t1;
-        depth[j] = ray_range(p, tyni_vec_scale(d, 1.0f / length), depth[j] * length, &t0, &t1) ? t1 / length : 0.0f;
+        tyni_sight v;
+        float length = tyni_slice_sight(slice, &p->view, tyni_slice_p(&p->slices, j), &v), t0, t1;
+        depth[j] = ray_range(p, &v, depth[j] * length, &t0, &t1) ? t1 / length : 0.0f;
     }
 }
 
+/* How far from the axis origin - light the rays of a line get. */
 static float reach_of(const pass *p, const tyni_slice *slice, const float *depth)
 {
-    float a = tyni_vec_dot(slice->a, slice->ex), b = tyni_vec_dot(slice->b, slice->ex), reach = 0.0f;
-    for (int32_t j = slice->first; j <= slice->last; j++)
-        reach = tyni_maxf(reach, depth[j] * (a + b * tyni_slice_p(&p->slices, j)));
+    float reach = 0.0f;
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        tyni_sight v;
+        float t = depth[j] * tyni_slice_sight(slice, &p->view, tyni_slice_p(&p->slices, j), &v);
+        reach = tyni_maxf(reach, tyni_vec_dot(tyni_vec_sub(tyni_sight_at(&v, t), slice->origin), slice->ex));
+    }
     return reach;
 }
 
@@ -150,9 +155,9 @@ static void run_rays(const pass *p, const tyni_slice *slice, const uint32_t *ray
     for (int32_t j = tyni_sample_next(rays, slice->first, slice->last); j <= slice->last;
          j = tyni_sample_next(rays, j + 1, slice->last)) {
         float at = tyni_slice_p(&p->slices, j), length, value[3];
-        tyni_vec3 d = tyni_vec_mad(slice->a, at, slice->b);
-        length = tyni_vec_length(d);
-        ray_value(p, s->row, tyni_vec_scale(d, 1.0f / length), s->depth[j] * length, at, s->stats, value);
+        tyni_sight v;
+        length = tyni_slice_sight(slice, &p->view, at, &v);
+        ray_value(p, s->row, &v, s->depth[j] * length, at, s->stats, value);
         s->value[0][j] = value[0];
         s->value[1][j] = value[1];
         s->value[2][j] = value[2];
@@ -183,7 +188,7 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
         return;
     }
     tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, config->maps), &p->slices, &slice, &p->lamp,
-                   reach_of(p, &slice, s.depth));
+                   &p->view, reach_of(p, &slice, s.depth));
     run_rays(p, &slice, s.rays, &s);
     while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2), slice.first, slice.last,
                               config->tolerance))
@@ -206,12 +211,11 @@ static void grid_job(void *argument, int32_t index, int32_t worker)
     memset(entries, 0, sizeof *entries * (size_t)p->field.pitch);
     for (int32_t i = 0; i < p->field.columns; i++) {
         int32_t x = tyni_mini(i * p->field.spacing, p->view.width - 1);
-        tyni_vec3 d = tyni_view_direction(&p->view, (float)x + 0.5f, (float)y + 0.5f);
-        float length = tyni_vec_length(d), value[3], t0, t1;
-        tyni_vec3 v = tyni_vec_scale(d, 1.0f / length);
+        tyni_sight v;
+        float length = tyni_view_sight(&p->view, (float)x + 0.5f, (float)y + 0.5f, &v), value[3], t0, t1;
         s.depth[i] = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y));
-        ray_value(p, NULL, v, s.depth[i] * length, 0.0f, s.stats, value);
-        s.depth[i] = ray_range(p, v, s.depth[i] * length, &t0, &t1) ? t1 / length : 0.0f;
+        ray_value(p, NULL, &v, s.depth[i] * length, 0.0f, s.stats, value);
+        s.depth[i] = ray_range(p, &v, s.depth[i] * length, &t0, &t1) ? t1 / length : 0.0f;
         s.value[0][i] = value[0];
         s.value[1][i] = value[1];
         s.value[2][i] = value[2];
@@ -231,10 +235,9 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
     *rejected = 0;
     for (int32_t i = 0; i < count; i++) {
         float px = (float)(x + i) + 0.5f, py = (float)y + 0.5f, t0, t1, length, norm[3], mix[3], value[3], light[3];
-        tyni_vec3 d = tyni_view_direction(&p->view, px, py), v;
-        length = tyni_vec_length(d);
-        v = tyni_vec_scale(d, 1.0f / length);
-        if (!ray_range(p, v, tyni_view_depth(&p->view, depth[i]) * length, &t0, &t1))
+        tyni_sight v;
+        length = tyni_view_sight(&p->view, px, py, &v);
+        if (!ray_range(p, &v, tyni_view_depth(&p->view, depth[i]) * length, &t0, &t1))
             continue;
         if (p->method == TYN_METHOD_EPIPOLAR) {
             float at = t1 / (length * p->view.far_depth);
@@ -243,7 +246,7 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
             tyni_gather_grid(&p->field, px, py, t1 / (length * p->view.far_depth), value);
         }
         if (p->method == TYN_METHOD_MARCH || *rejected >> i & 1u) {
-            tyni_ray_pixel(&p->lamp, m, v, t1, steps, light);
+            tyni_ray_pixel(&p->lamp, m, &v, t1, steps, light);
             stats->rays += p->method == TYN_METHOD_MARCH;
             for (int32_t c = 0; c < 3; c++)
                 rgb[3 * i + c] += light[c];
@@ -256,10 +259,10 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
             light[m->high] = value[1];
             light[m->middle] = value[0] + (value[1] - value[0]) * m->blend;
         }
-        tyni_integral_norm(m, &p->lamp, v, t0, t1, norm);
+        tyni_integral_norm(m, &p->lamp, &v, t0, t1, norm);
         mix[0] = mix[1] = mix[2] = 1.0f;
         if (p->lamp.kind == TYN_LIGHT_DIRECTIONAL)
-            tyni_medium_mix(m, tyni_clampf(tyni_vec_dot(v, p->lamp.to_light), -1.0f, 1.0f), mix);
+            tyni_medium_mix(m, tyni_clampf(tyni_vec_dot(v.d, p->lamp.to_light), -1.0f, 1.0f), mix);
         for (int32_t c = 0; c < 3; c++)
             rgb[3 * i + c] += light[c] * norm[c] * mix[c] * p->lamp.colour[c];
     }
@@ -278,8 +281,9 @@ static void finish(const pass *p, int32_t x, int32_t y, int32_t count, const flo
     if (!frame->target.pixels && !frame->transmittance.pixels)
         return;
     for (int32_t i = 0; i < count; i++) {
-        tyni_vec3 d = tyni_view_direction(&p->view, (float)(x + i) + 0.5f, (float)y + 0.5f);
-        float s = tyni_art_reach(frame, tyni_view_depth(&p->view, depth[i]) * tyni_vec_length(d));
+        tyni_sight v;
+        float length = tyni_view_sight(&p->view, (float)(x + i) + 0.5f, (float)y + 0.5f, &v);
+        float s = tyni_art_reach(frame, tyni_view_depth(&p->view, depth[i]) * length);
         for (int32_t c = 0; c < 3; c++)
             share[3 * i + c] = tyni_num_exp(-p->fog[c] * s);
     }
@@ -383,7 +387,7 @@ static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *
         tyni_art_lamp(&p->lamp, light, p->frame);
     }
     /* at the light's own position there is no epipole, and a ray stays inside one texel: a ray for each pixel costs nothing */
-    if (p->method == TYN_METHOD_EPIPOLAR && p->lamp.at_camera)
+    if (p->method == TYN_METHOD_EPIPOLAR && p->lamp.no_epipole)
         p->method = TYN_METHOD_MARCH;
     p->field.entries = c->entries;
     p->field.scales = (const float(*)[3])c->scales;

@@ -30,6 +30,7 @@ tyn_status tyn_camera_look(tyn_camera *camera, const float position[3], const fl
     if (!(tyni_vec_length(right) > 1e-6f))
         return TYN_E_CAMERA;
     right = tyni_vec_normalise(right);
+    c.kind = TYN_CAMERA_PERSPECTIVE;
     memcpy(c.position, position, sizeof c.position);
     store(c.forward, forward);
     store(c.right, right);
@@ -40,6 +41,63 @@ tyn_status tyn_camera_look(tyn_camera *camera, const float position[3], const fl
     c.bottom_edge = -half;
     c.right_edge = half * (float)width / (float)height;
     c.left_edge = -c.right_edge;
+    c.near_depth = near_depth;
+    c.far_depth = far_depth;
+    if (tyni_check_camera(&c) != TYN_OK)
+        return TYN_E_CAMERA;
+    *camera = c;
+    return TYN_OK;
+}
+
+static int about_zero(float a, float b, float size)
+{
+    return tyni_absf(a) <= 1e-5f * size && tyni_absf(b) <= 1e-5f * size;
+}
+
+/* Where a row of a projection (coordinate = scale * x + shift, over w) meets -1 and 1. */
+static void edges(float scale, float shift, float w, float *low, float *high)
+{
+    float a = (-w - shift) / scale, b = (w - shift) / scale;
+    *low = tyni_minf(a, b);
+    *high = tyni_maxf(a, b);
+}
+
+tyn_status tyn_camera_from_matrices(tyn_camera *camera, const float view[16], const float projection[16], float near_depth,
+                                    float far_depth)
+{
+    const float *v = view, *p = projection;
+    tyni_vec3 right, up, back, at;
+    tyn_camera c;
+    int flat;
+    if (!camera || !view || !projection)
+        return TYN_E_NULL;
+    if (!tyni_check_finite(v, 16) || !tyni_check_finite(p, 8) || !tyni_check_finite(p + 12, 4))
+        return TYN_E_CAMERA;
+    memset(&c, 0, sizeof c);
+    /* a turn and a shift: the rows are the axes, and a mirror is none */
+    right = tyni_vec_load(v);
+    up = tyni_vec_load(v + 4);
+    back = tyni_vec_load(v + 8);
+    if (!about_zero(v[12], v[13], 1.0f) || !about_zero(v[14], v[15] - 1.0f, 1.0f) ||
+        !(tyni_vec_dot(tyni_vec_cross(right, up), back) > 0.0f))
+        return TYN_E_CAMERA;
+    at = tyni_vec_mad(tyni_vec_mad(tyni_vec_scale(right, -v[3]), -v[7], up), -v[11], back);
+    store(c.position, at);
+    store(c.right, right);
+    store(c.up, up);
+    store(c.forward, tyni_vec_scale(back, -1.0f));
+    /* w is in proportion to the depth -z (perspective), or constant (orthographic) */
+    flat = p[15] > 0.0f && about_zero(p[14], 0.0f, p[15]);
+    c.kind = flat ? TYN_CAMERA_ORTHOGRAPHIC : TYN_CAMERA_PERSPECTIVE;
+    if (flat ? !about_zero(p[12], p[13], p[15])
+             : !(p[14] < 0.0f && about_zero(p[12], p[13], -p[14]) && about_zero(p[15], 0.0f, -p[14])))
+        return TYN_E_CAMERA;
+    /* x and y each of their own coordinate and a shift, with the depth (1 at the pixel plane) or without it */
+    if (!(p[0] > 0.0f) || !about_zero(p[1], flat ? p[2] : p[3], p[0]) ||
+        !about_zero(p[4], flat ? p[6] : p[7], tyni_absf(p[5])) || p[5] == 0.0f)
+        return TYN_E_CAMERA;
+    edges(p[0], flat ? p[3] : -p[2], flat ? p[15] : -p[14], &c.left_edge, &c.right_edge);
+    edges(p[5], flat ? p[7] : -p[6], flat ? p[15] : -p[14], &c.bottom_edge, &c.top_edge);
     c.near_depth = near_depth;
     c.far_depth = far_depth;
     if (tyni_check_camera(&c) != TYN_OK)
@@ -59,6 +117,34 @@ tyn_status tyn_medium_air(tyn_medium media[2], float scale)
     for (int32_t c = 0; c < 3; c++) {
         media[0].scatter[c] = rayleigh[c] * scale;
         media[1].scatter[c] = 2.0e-5f * scale;
+    }
+    media[0].phase = TYN_PHASE_RAYLEIGH;
+    media[1].phase = TYN_PHASE_HG;
+    media[1].g = 0.76f;
+    return TYN_OK;
+}
+
+tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibility, float angstrom)
+{
+    /* Rayleigh scattering as in tyn_medium_air; its channels are the wavelengths 680, 550 and 440 nm (Bruneton and Neyret 2008)
+     */
+    static const float rayleigh[3] = {5.8e-6f, 13.5e-6f, 33.1e-6f};
+    static const float log_ratio[3] = {-0.2121745f, 0.0f, 0.2231436f}; /* of 550 nm to the wavelength */
+    float air, haze;
+    if (!media)
+        return TYN_E_NULL;
+    if (!tyni_finite(turbidity) || turbidity < 1.0f || !tyni_finite(visibility) || visibility < 0.0f ||
+        !(angstrom >= 0.0f && angstrom <= 4.0f))
+        return TYN_E_MEDIUM;
+    air = visibility > 0.0f ? 3.912f / visibility / turbidity : rayleigh[1];
+    haze = air * (turbidity - 1.0f);
+    /* the largest coefficients must be numbers that can be added up */
+    if (!(air < 1e30f) || !(haze < 1e30f))
+        return TYN_E_MEDIUM;
+    memset(media, 0, 2 * sizeof *media);
+    for (int32_t c = 0; c < 3; c++) {
+        media[0].scatter[c] = air * (rayleigh[c] / rayleigh[1]);
+        media[1].scatter[c] = haze * tyni_num_exp(angstrom * log_ratio[c]);
     }
     media[0].phase = TYN_PHASE_RAYLEIGH;
     media[1].phase = TYN_PHASE_HG;
@@ -94,15 +180,9 @@ tyn_status tyn_shadow_fit(tyn_light *light, const tyn_camera *camera, const floa
     tyn_status status = check_fit(light, camera);
     if (status != TYN_OK)
         return status;
-    if (!bounds_min != !bounds_max)
-        return TYN_E_NULL;
-    if (bounds_min) {
-        if (!tyni_check_finite(bounds_min, 3) || !tyni_check_finite(bounds_max, 3))
-            return TYN_E_MESH;
-        for (int32_t i = 0; i < 3; i++)
-            if (bounds_min[i] > bounds_max[i])
-                return TYN_E_MESH;
-    }
+    status = tyni_check_bounds(bounds_min, bounds_max);
+    if (status != TYN_OK)
+        return status;
     casters.low = bounds_min;
     casters.high = bounds_max;
     fit(light, camera, NULL, &casters);

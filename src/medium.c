@@ -69,9 +69,9 @@ void tyni_medium_mix(const tyni_medium *m, float cosine, float mix[3])
     }
 }
 
-void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t, float density[3])
+void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t, float density[3])
 {
-    tyni_vec3 to = tyni_vec_sub(lamp->position, tyni_vec_scale(v, t)); /* from the point to the light */
+    tyni_vec3 to = tyni_vec_sub(lamp->position, tyni_sight_at(v, t)); /* from the point to the light */
     float r2 = tyni_maxf(tyni_vec_dot(to, to), lamp->radius * lamp->radius), r = sqrtf(r2);
     if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
@@ -79,19 +79,19 @@ void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyn
         return;
     }
     /* light travels along -to, towards the camera is -v */
-    tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(to, v) / r, -1.0f, 1.0f), density);
+    tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(to, v->d) / r, -1.0f, 1.0f), density);
     for (int32_t c = 0; c < 3; c++)
         density[c] *= tyni_num_exp(-medium->sigma[c] * (t + r)) / r2;
 }
 
-static void path_begin(tyni_path *p, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1)
+static void path_begin(tyni_path *p, const tyni_lamp *lamp, const tyni_sight *v, float t0, float t1)
 {
-    tyni_vec3 h;
+    tyni_vec3 to = tyni_vec_sub(lamp->position, v->o), h;
     p->t0 = t0;
     p->t1 = t1;
-    p->near_t = tyni_vec_dot(v, lamp->position);
+    p->near_t = tyni_vec_dot(v->d, to);
     p->from = t0 - p->near_t;
-    h = tyni_vec_mad(lamp->position, -p->near_t, v);
+    h = tyni_vec_mad(to, -p->near_t, v->d);
     p->h = tyni_maxf(tyni_vec_length(h), lamp->radius);
     p->span = tyni_num_atan2(p->h * (t1 - t0), p->from * (t1 - p->near_t) + p->h * p->h);
 }
@@ -107,7 +107,7 @@ static float path_t(const tyni_path *p, float psi)
 }
 
 /* The integrand per d psi. */
-static void path_value(const tyni_path *p, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float psi,
+static void path_value(const tyni_path *p, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float psi,
                        float value[3])
 {
     float t = path_t(p, psi), d = t - p->near_t, scale;
@@ -127,7 +127,7 @@ static int32_t intervals(const tyni_medium *medium, const tyni_path *p)
         TYNI_MEDIUM_KNOTS - 1);
 }
 
-static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v)
+static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v)
 {
     float last[3], half[3], next[3];
     int32_t n;
@@ -152,8 +152,8 @@ static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_la
     }
 }
 
-void tyni_integral_begin(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1,
-                         const int32_t *channels, int32_t count)
+void tyni_integral_begin(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t0,
+                         float t1, const int32_t *channels, int32_t count)
 {
     it->count = count;
     it->t0 = t0;
@@ -209,7 +209,8 @@ void tyni_integral_at(const tyni_integral *it, float t, float *out)
     tyni_integral_at_variable(it, tyni_integral_variable(it, t), out);
 }
 
-void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3])
+void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t0, float t1,
+                        float norm[3])
 {
     /* Gauss and Legendre, four points on 0 .. 1 */
     static const float at[4] = {0.0694318442f, 0.330009478f, 0.669990522f, 0.930568156f};

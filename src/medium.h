@@ -65,8 +65,8 @@ typedef struct tyni_integral {
 } tyni_integral;
 
 /* t0 .. t1 must lie inside the light's volume (tyni_view_clip). */
-void tyni_integral_begin(tyni_integral *integral, const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0,
-                         float t1, const int32_t *channels, int32_t count);
+void tyni_integral_begin(tyni_integral *integral, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v,
+                         float t0, float t1, const int32_t *channels, int32_t count);
 
 /* out[n]: from t0 to t. Never falls with t beyond rounding. */
 void tyni_integral_at(const tyni_integral *integral, float t, float *out);
@@ -80,9 +80,10 @@ void tyni_integral_at_variable(const tyni_integral *integral, float variable, fl
 /* A cheap stand-in for the whole integral that is exact for a directional light and smooth over the screen for a spot: radiance
  * is divided by it where it is sampled and multiplied by it at each pixel, so that only the smooth ratio is interpolated. All
  * three channels. */
-void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t0, float t1, float norm[3]);
+void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t0, float t1,
+                        float norm[3]);
 
 /* The integrand per dt in all channels. */
-void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, tyni_vec3 v, float t, float density[3]);
+void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t, float density[3]);
 
 #endif

@@ -8,13 +8,13 @@
 typedef struct meter {
     const tyni_integral *integral;
     const tyni_lamp *lamp;
-    tyni_vec3 v;
+    const tyni_sight *v;
     float *sum;
     float from; /* t of the last switch */
     int outside, on;
 } meter;
 
-static void meter_begin(meter *m, const tyni_integral *integral, const tyni_lamp *lamp, tyni_vec3 v, float *sum)
+static void meter_begin(meter *m, const tyni_integral *integral, const tyni_lamp *lamp, const tyni_sight *v, float *sum)
 {
     m->integral = integral;
     m->lamp = lamp;
@@ -35,7 +35,7 @@ static int32_t colour_parts(const meter *m, float ta, float tb)
         const tyni_form *s = i < lamp->slide_count ? &lamp->slides[i].s : &lamp->maps[i - lamp->slide_count].u;
         const tyni_form *t = i < lamp->slide_count ? &lamp->slides[i].t : &lamp->maps[i - lamp->slide_count].v;
         const tyni_form *w = i < lamp->slide_count ? &lamp->slides[i].w : &lamp->maps[i - lamp->slide_count].w;
-        tyni_vec3 a = tyni_vec_scale(m->v, ta), b = tyni_vec_scale(m->v, tb);
+        tyni_vec3 a = tyni_sight_at(m->v, ta), b = tyni_sight_at(m->v, tb);
         float wa = tyni_form_at(w, a), wb = tyni_form_at(w, b), ds, dt, scale = 1.0f;
         if (i >= lamp->slide_count) {
             const tyni_map *map = &lamp->maps[i - lamp->slide_count];
@@ -64,7 +64,7 @@ static void meter_coloured(meter *m, float ta, float tb)
     tyni_integral_at(m->integral, ta, last);
     for (int32_t k = 0; k < parts; k++) {
         tyni_integral_at_variable(m->integral, x + (float)(k + 1) * step, next);
-        tyni_view_colour(m->lamp, tyni_vec_scale(m->v, tyni_integral_t(m->integral, x + ((float)k + 0.5f) * step)), rgb);
+        tyni_view_colour(m->lamp, tyni_sight_at(m->v, tyni_integral_t(m->integral, x + ((float)k + 0.5f) * step)), rgb);
         for (int32_t i = 0; i < m->integral->count; i++)
             m->sum[i] += (next[i] - last[i]) * rgb[m->integral->channels[i]];
         memcpy(last, next, sizeof last);
@@ -132,11 +132,11 @@ typedef struct line {
     float c, d;
 } line;
 
-static line along(const tyni_form *f, tyni_vec3 v)
+static line along(const tyni_form *f, const tyni_sight *v)
 {
     line l;
-    l.c = f->c;
-    l.d = tyni_vec_dot(f->v, v);
+    l.c = tyni_form_at(f, v->o);
+    l.d = tyni_vec_dot(f->v, v->d);
     return l;
 }
 
@@ -164,7 +164,7 @@ typedef struct track {
     float t[2], w[2];
 } track;
 
-static int track_begin(track *k, const tyni_map *map, tyni_vec3 v, const float part[2])
+static int track_begin(track *k, const tyni_map *map, const tyni_sight *v, const float part[2])
 {
     line lu = along(&map->u, v), lv = along(&map->v, v), lz = along(&map->z, v), lw = along(&map->w, v), edge;
     float width = (float)map->texels.width, height = (float)map->texels.height, u[2], y[2], z[2];
@@ -258,7 +258,7 @@ static void walk_texels(const tyni_map *map, const track *k, meter *m)
     }
 }
 
-void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, float *light)
+void tyni_ray_walk(const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, float *light)
 {
     /* parts of the ray that no map has covered yet */
     float part[TYN_MAX_MAPS + 1][2];
@@ -342,7 +342,8 @@ static int row_span(line r, line w, float part[2], float *from, float *to)
     return 1;
 }
 
-void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyni_integral *it, tyni_vec3 v, float *light)
+void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v,
+                  float *light)
 {
     uint32_t position = tyni_row_position(row, p);
     meter m;
@@ -367,7 +368,7 @@ void tyni_ray_row(const tyni_row *row, float p, const tyni_lamp *lamp, const tyn
     meter_lift(&m);
 }
 
-int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, tyni_vec3 v)
+int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, const tyni_sight *v)
 {
     float part[2], from, to, texels = 0.0f, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
     if (row->count < 1)
@@ -382,7 +383,7 @@ int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, tyni_vec3 v)
     return tyni_maxf(1.0f, depth) > 0.05f * texels;
 }
 
-static int point_lit(const tyni_lamp *lamp, tyni_vec3 v, float t)
+static int point_lit(const tyni_lamp *lamp, const tyni_sight *v, float t)
 {
     for (int32_t i = 0; i < lamp->map_count; i++) {
         const tyni_map *map = &lamp->maps[i];
@@ -399,7 +400,7 @@ static int point_lit(const tyni_lamp *lamp, tyni_vec3 v, float t)
     return lamp->outside;
 }
 
-void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float t0, float t1, int32_t steps,
+void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1, int32_t steps,
                     float light[3])
 {
     float dt = (t1 - t0) / (float)steps, density[3], rgb[3] = {1.0f, 1.0f, 1.0f}, dark[3] = {0.0f, 0.0f, 0.0f};
@@ -413,7 +414,7 @@ void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 
             continue;
         tyni_integral_density(medium, lamp, v, t, density);
         if (lamp->coloured)
-            tyni_view_colour(lamp, tyni_vec_scale(v, t), rgb);
+            tyni_view_colour(lamp, tyni_sight_at(v, t), rgb);
         for (int32_t c = 0; c < 3; c++)
             *(lit ? &light[c] : &dark[c]) += density[c] * dt * rgb[c];
     }
@@ -421,7 +422,8 @@ void tyni_ray_steps(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 
         light[c] = tyni_maxf(light[c] + lamp->lift * dark[c], 0.0f);
 }
 
-void tyni_ray_pixel(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 v, float s, int32_t steps, float light[3])
+void tyni_ray_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, int32_t steps,
+                    float light[3])
 {
     static const int32_t channels[3] = {0, 1, 2};
     float t0 = 0.0f, t1 = s, mix[3];
@@ -436,7 +438,7 @@ void tyni_ray_pixel(const tyni_lamp *lamp, const tyni_medium *medium, tyni_vec3 
         tyni_ray_walk(lamp, &it, v, light);
     }
     if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
-        tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v, lamp->to_light), -1.0f, 1.0f), mix);
+        tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v->d, lamp->to_light), -1.0f, 1.0f), mix);
     else
         mix[0] = mix[1] = mix[2] = 1.0f;
     for (int32_t c = 0; c < 3; c++)

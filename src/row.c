@@ -37,21 +37,22 @@ static void fan_clip(fan *f, float fn, float fd)
 static int fan_on_map(fan *f, const tyni_map *map, const tyni_slice *slice, float u[2], float v[2])
 {
     float un = tyni_vec_dot(map->u.v, slice->ex), vn = tyni_vec_dot(map->v.v, slice->ex);
-    float wn = tyni_vec_dot(map->w.v, slice->ex), wd = map->w.c;
+    float wn = tyni_vec_dot(map->w.v, slice->ex), wd = tyni_form_at(&map->w, slice->origin);
     float width = (float)map->texels.width, height = (float)map->texels.height;
+    float ud = tyni_form_at(&map->u, slice->origin), vd = tyni_form_at(&map->v, slice->origin);
     fan_clip(f, wn, wd - 1e-6f * (tyni_absf(wn) + tyni_absf(wd)));
-    fan_clip(f, un, map->u.c);
-    fan_clip(f, width * wn - un, width * wd - map->u.c);
-    fan_clip(f, vn, map->v.c);
-    fan_clip(f, height * wn - vn, height * wd - map->v.c);
+    fan_clip(f, un, ud);
+    fan_clip(f, width * wn - un, width * wd - ud);
+    fan_clip(f, vn, vd);
+    fan_clip(f, height * wn - vn, height * wd - vd);
     if (fan_empty(f))
         return 0;
     for (int32_t i = 0; i < 2; i++) {
         float w = f->n[i] * wn + f->d[i] * wd;
         if (!(w > 0.0f))
             return 0;
-        u[i] = tyni_clampf((f->n[i] * un + f->d[i] * map->u.c) / w, 0.0f, width);
-        v[i] = tyni_clampf((f->n[i] * vn + f->d[i] * map->v.c) / w, 0.0f, height);
+        u[i] = tyni_clampf((f->n[i] * un + f->d[i] * ud) / w, 0.0f, width);
+        v[i] = tyni_clampf((f->n[i] * vn + f->d[i] * vd) / w, 0.0f, height);
     }
     return 1;
 }
@@ -62,10 +63,11 @@ typedef struct ends {
     float g[2], z[2], c[2];
 } ends;
 
-static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice, const tyni_map *map, const float p[2])
+static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice, const tyni_view *view, const tyni_map *map,
+                      const float p[2])
 {
     /* (g w, z w, w) = M (x, y, 1) in the slice's plane */
-    float m[3][3], x[3], y[3], det, sign;
+    float m[3][3], x[3], y[3], w[3], det, sign;
     const tyni_form *form[3];
     form[0] = &piece->r;
     form[1] = &map->z;
@@ -73,24 +75,30 @@ static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice,
     for (int32_t i = 0; i < 3; i++) {
         m[i][0] = tyni_vec_dot(form[i]->v, slice->ex);
         m[i][1] = tyni_vec_dot(form[i]->v, slice->ey);
-        m[i][2] = form[i]->c;
+        m[i][2] = tyni_form_at(form[i], slice->origin);
     }
     /* rows of the inverse, but for a positive factor */
     for (int32_t i = 0; i < 3; i++) {
         int32_t j = (i + 1) % 3, k = (i + 2) % 3;
         x[i] = m[j][1] * m[k][2] - m[k][1] * m[j][2];
         y[i] = m[k][0] * m[j][2] - m[j][0] * m[k][2];
+        w[i] = m[j][0] * m[k][1] - m[k][0] * m[j][1];
     }
     det = m[0][0] * x[0] + m[1][0] * x[1] + m[2][0] * x[2];
     if (det == 0.0f || !tyni_finite(det))
         return 0;
     sign = det < 0.0f ? -1.0f : 1.0f;
     for (int32_t i = 0; i < 2; i++) {
-        tyni_vec3 v = tyni_vec_mad(slice->a, p[i], slice->b);
-        float vx = sign * tyni_vec_dot(v, slice->ex), vy = sign * tyni_vec_dot(v, slice->ey);
-        e->g[i] = vy * x[0] - vx * y[0];
-        e->z[i] = vy * x[1] - vx * y[1];
-        e->c[i] = vy * x[2] - vx * y[2];
+        /* which side of the view ray through p the surface is on; linear in p for rays of depth 1, not of length 1 */
+        tyni_sight v;
+        float length = tyni_slice_sight(slice, view, p[i], &v), vx, vy, off;
+        v.o = tyni_vec_sub(v.o, slice->origin);
+        vx = sign * length * tyni_vec_dot(v.d, slice->ex);
+        vy = sign * length * tyni_vec_dot(v.d, slice->ey);
+        off = vx * tyni_vec_dot(v.o, slice->ey) - vy * tyni_vec_dot(v.o, slice->ex);
+        e->g[i] = vy * x[0] - vx * y[0] + off * w[0];
+        e->z[i] = vy * x[1] - vx * y[1] + off * w[1];
+        e->c[i] = vy * x[2] - vx * y[2] + off * w[2];
     }
     return 1;
 }
@@ -164,8 +172,8 @@ typedef struct pen {
     size_t room;
 } pen;
 
-static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_slice *slice, const float u[2], const float v[2],
-                      const float p[2])
+static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_slice *slice, const tyni_view *view,
+                      const float u[2], const float v[2], const float p[2])
 {
     tyni_piece *piece = &row->pieces[row->count];
     const tyni_form *form;
@@ -182,7 +190,7 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
     piece->to = c.to;
     piece->threshold = w->threshold;
     piece->split = w->split;
-    if (!ends_begin(&e, piece, slice, map, p))
+    if (!ends_begin(&e, piece, slice, view, map, p))
         return;
     fill(piece, w->threshold, w->split, map, &c, &e);
     row->count++;
@@ -192,7 +200,7 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
 }
 
 void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slices *slices,
-                    const tyni_slice *slice, const tyni_lamp *lamp, float reach)
+                    const tyni_slice *slice, const tyni_lamp *lamp, const tyni_view *view, float reach)
 {
     /* what no map has covered yet: a local light's columns as two quarters, since half a circle cannot be clipped by lines */
     fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
@@ -212,7 +220,7 @@ void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t roo
             fan f = open[k];
             if (fan_empty(&f) || !fan_on_map(&f, &lamp->maps[i], slice, u, v))
                 continue;
-            add_piece(row, &w, &lamp->maps[i], slice, u, v, p);
+            add_piece(row, &w, &lamp->maps[i], slice, view, u, v, p);
             if (fans < TYNI_ROW_PIECES + 2) { /* beyond it */
                 open[fans] = open[k];
                 open[fans].n[0] = f.n[1];

@@ -120,12 +120,45 @@ static void trim(tyni_slice *s, const tyni_slices *g, float low, float high)
     s->last = tyni_mini(s->last, tyni_floori(tyni_clampf(b, -1.0f, 65536.0f)));
 }
 
+static void slice_plane(tyni_slice *s, float border, const tyni_lamp *lamp, const tyni_view *view)
+{
+    tyni_vec3 side = tyni_vec_mad(s->a, border, s->b);
+    s->origin = tyni_vec(0.0f, 0.0f, 0.0f);
+    s->ey = lamp->to_light;
+    if (view->orthographic && lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+        side = view->forward;
+    } else if (view->orthographic) {
+        /* columns are angles about the light, from the way back to the camera to the way it looks */
+        s->ey = view->forward;
+        s->origin = tyni_vec_mad(lamp->position, -lamp->distance, view->forward);
+        side = tyni_vec_sub(side, s->origin);
+    }
+    s->ex = tyni_vec_normalise(tyni_vec_mad(side, -tyni_vec_dot(side, s->ey), s->ey));
+    if (view->orthographic && lamp->kind == TYN_LIGHT_DIRECTIONAL) { /* rays start at different columns: the least is 0 */
+        float at = tyni_vec_dot(s->b, s->ex) >= 0.0f ? 0.0f : (float)(view->width + view->height);
+        s->origin = tyni_vec_mad(s->a, at, s->b);
+    }
+}
+
+float tyni_slice_sight(const tyni_slice *s, const tyni_view *view, float p, tyni_sight *v)
+{
+    tyni_vec3 d = tyni_vec_mad(s->a, p, s->b);
+    float length;
+    v->o = d;
+    v->d = view->forward;
+    if (view->orthographic)
+        return 1.0f;
+    length = tyni_vec_length(d);
+    v->o = tyni_vec(0.0f, 0.0f, 0.0f);
+    v->d = tyni_vec_scale(d, 1.0f / length);
+    return length;
+}
+
 void tyni_slice_line(tyni_slice *s, const tyni_slices *g, const tyni_lamp *lamp, const tyni_view *view, int32_t index)
 {
     const tyni_sector *sector = g->sectors;
     float along, across, mb, margin, at;
     int32_t size;
-    tyni_vec3 far_end;
     while (index >= sector->start + sector->count)
         sector++;
     s->along_y = sector->along_y;
@@ -136,9 +169,7 @@ void tyni_slice_line(tyni_slice *s, const tyni_slices *g, const tyni_lamp *lamp,
     s->m0 = mb - s->slope * sector->border;
     s->a = tyni_vec_mad(view->origin, s->m0, s->along_y ? view->dx : view->dy);
     s->b = s->along_y ? tyni_vec_mad(view->dy, s->slope, view->dx) : tyni_vec_mad(view->dx, s->slope, view->dy);
-    far_end = tyni_vec_mad(s->a, sector->border, s->b);
-    s->ey = lamp->to_light;
-    s->ex = tyni_vec_normalise(tyni_vec_mad(far_end, -tyni_vec_dot(far_end, s->ey), s->ey));
+    slice_plane(s, sector->border, lamp, view);
     /* the samples: on the screen, on this side of the epipole */
     size = s->along_y ? g->height : g->width;
     s->first = 0;

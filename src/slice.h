@@ -46,9 +46,14 @@ typedef struct tyni_slice {
     int32_t first, last; /* samples on the screen (or within a line's spacing of it); first > last: none */
     float m0, slope;
     float epipole; /* p of the epipole; +-1e9 if it is farther */
-    /* Directions of depth 1 are a + p * b. The plane is spanned by ey, to the light, and ex, towards the line's side. */
-    tyni_vec3 a, b, ex, ey;
+    /* The line on the pixel plane is a + p * b (see tyni_view). The slice's plane has its origin at `origin`: the camera, or
+     * for an orthographic one a point on the far side of the epipole from all of the line. ey points to the light, ex to the
+     * line's side. */
+    tyni_vec3 a, b, origin, ex, ey;
 } tyni_slice;
+
+/* The ray through p; returns its length per depth. */
+float tyni_slice_sight(const tyni_slice *slice, const tyni_view *view, float p, tyni_sight *v);
 
 void tyni_slice_line(tyni_slice *slice, const tyni_slices *slices, const tyni_lamp *lamp, const tyni_view *view, int32_t index);
 

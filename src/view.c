@@ -22,16 +22,21 @@ void tyni_view_camera(tyni_view *view, const tyn_camera *camera, int32_t width, 
     view->height = height;
     view->dx = tyni_vec_scale(view->right, 1.0f / view->scale_x);
     view->dy = tyni_vec_scale(view->up, -1.0f / view->scale_y);
-    view->origin = tyni_vec_mad(tyni_vec_mad(view->forward, view->left, view->right), view->top, view->up);
+    view->orthographic = camera->kind == TYN_CAMERA_ORTHOGRAPHIC;
+    view->origin = tyni_vec_mad(tyni_vec_scale(view->right, view->left), view->top, view->up);
+    if (!view->orthographic)
+        view->origin = tyni_vec_add(view->origin, view->forward);
 }
 
 /* IVB section 6.1: the light projected homogeneously. A point behind the camera has w < 0; both signs of (x, y, w) are one line
- * bundle, so w is made positive and the direction remembered. */
+ * bundle, so w is made positive and the direction remembered. An orthographic camera sees a direction at infinity (w = 0) and a
+ * position, wherever it is, as if in front: light always falls away from it on the screen. */
 static void epipole(tyni_lamp *lamp, const tyni_view *view)
 {
-    float a = tyni_vec_dot(lamp->to_light, view->right);
-    float b = tyni_vec_dot(lamp->to_light, view->up);
-    float w = tyni_vec_dot(lamp->to_light, view->forward);
+    tyni_vec3 at = view->orthographic && lamp->kind != TYN_LIGHT_DIRECTIONAL ? lamp->position : lamp->to_light;
+    float a = tyni_vec_dot(at, view->right), b = tyni_vec_dot(at, view->up), w = tyni_vec_dot(at, view->forward);
+    if (view->orthographic)
+        w = lamp->kind == TYN_LIGHT_DIRECTIONAL ? 0.0f : 1.0f;
     lamp->ex = (a - view->left * w) * view->scale_x;
     lamp->ey = (view->top * w - b) * view->scale_y;
     lamp->ew = w;
@@ -41,8 +46,10 @@ static void epipole(tyni_lamp *lamp, const tyni_view *view)
         lamp->ey = -lamp->ey;
         lamp->ew = -w;
     }
+    if (view->orthographic)
+        lamp->no_epipole = w == 0.0f && a * a + b * b < 1e-10f;
     /* So far off that a float could not tell its lines from parallel ones: parallel they are. */
-    if (lamp->ew * 1e6f * (float)(view->width + view->height) < tyni_absf(lamp->ex) + tyni_absf(lamp->ey))
+    else if (lamp->ew * 1e6f * (float)(view->width + view->height) < tyni_absf(lamp->ex) + tyni_absf(lamp->ey))
         lamp->ew = 0.0f;
 }
 
@@ -94,7 +101,7 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
         if (light->kind == TYN_LIGHT_SPOT)
             tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cos_half);
         lamp->radius = tyni_maxf(1e-2f * view->near_depth, 1e-4f * lamp->distance);
-        lamp->at_camera = lamp->distance <= 1e-4f * view->near_depth;
+        lamp->no_epipole = lamp->distance <= 1e-4f * view->near_depth;
     }
     epipole(lamp, view);
     lamp->slide_count = tyni_slide_set(lamp->slides, light, origin);
@@ -109,13 +116,13 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
 /* With T = t - (closest approach) the point is T v - h, h at right angles to v, and the double cone
  *     (T v.a - h.a)^2 >= k^2 (T^2 + h^2)
  * is a quadratic in T without the cancellation of the usual form. */
-static int clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
+static int clip_cone(const tyni_lamp *lamp, const tyni_sight *v, float *t0, float *t1)
 {
     float tc, va, ha, k2, a, c, disc, root, b, r1, r2, swap;
-    tyni_vec3 h;
-    tc = tyni_vec_dot(v, lamp->position);
-    h = tyni_vec_mad(lamp->position, -tc, v);
-    va = tyni_vec_dot(v, lamp->axis);
+    tyni_vec3 to = tyni_vec_sub(lamp->position, v->o), h;
+    tc = tyni_vec_dot(v->d, to);
+    h = tyni_vec_mad(to, -tc, v->d);
+    va = tyni_vec_dot(v->d, lamp->axis);
     ha = tyni_vec_dot(h, lamp->axis);
     k2 = lamp->cos_half * lamp->cos_half;
     a = va * va - k2;
@@ -147,10 +154,10 @@ static int clip_cone(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
     return *t0 < *t1;
 }
 
-/* Narrows t0 .. t1 to where a.p * x + b.p >= 0 along p = t v. */
-static void clip_form(const tyni_form *a, float x, const tyni_form *b, tyni_vec3 v, float *t0, float *t1)
+/* Narrows t0 .. t1 to where a.p * x + b.p >= 0 along a ray. */
+static void clip_form(const tyni_form *a, float x, const tyni_form *b, const tyni_sight *v, float *t0, float *t1)
 {
-    float c = a->c * x + b->c, d = tyni_vec_dot(a->v, v) * x + tyni_vec_dot(b->v, v);
+    float c = tyni_form_at(a, v->o) * x + tyni_form_at(b, v->o), d = tyni_vec_dot(a->v, v->d) * x + tyni_vec_dot(b->v, v->d);
     if (d > 0.0f)
         *t0 = tyni_maxf(*t0, -c / d);
     else if (d < 0.0f)
@@ -159,7 +166,7 @@ static void clip_form(const tyni_form *a, float x, const tyni_form *b, tyni_vec3
         *t1 = *t0;
 }
 
-static int clip_slide(const tyni_slide *slide, tyni_vec3 v, float *t0, float *t1)
+static int clip_slide(const tyni_slide *slide, const tyni_sight *v, float *t0, float *t1)
 {
     clip_form(&slide->w, 0.0f, &slide->s, v, t0, t1);
     clip_form(&slide->w, 0.0f, &slide->t, v, t0, t1);
@@ -168,7 +175,7 @@ static int clip_slide(const tyni_slide *slide, tyni_vec3 v, float *t0, float *t1
     return *t0 < *t1;
 }
 
-int tyni_view_clip(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1)
+int tyni_view_clip(const tyni_lamp *lamp, const tyni_sight *v, float *t0, float *t1)
 {
     if (lamp->slide_count && lamp->kind != TYN_LIGHT_POINT)
         return clip_slide(&lamp->slides[0], v, t0, t1);

@@ -10,8 +10,10 @@
 
 #include "base.h"
 
-/* Direction of the pixel-plane point (px, py), of depth 1: origin + px * dx + py * dy. Pixel centres are at 0.5. */
+/* A point (px, py) of the pixel plane is origin + px * dx + py * dy: at depth 1, the direction of its ray (perspective), or at
+ * depth 0, where its ray starts (orthographic). Pixel centres are at 0.5. */
 typedef struct tyni_view {
+    int orthographic;
     tyni_vec3 position;
     tyni_vec3 right, up, forward;
     tyni_vec3 origin, dx, dy;
@@ -22,9 +24,42 @@ typedef struct tyni_view {
 
 void tyni_view_camera(tyni_view *view, const tyn_camera *camera, int32_t width, int32_t height);
 
-static inline tyni_vec3 tyni_view_direction(const tyni_view *view, float px, float py)
+/* A view ray: o + t * d, |d| = 1, t in metres from the camera (perspective) or from its plane (orthographic: o differs). */
+typedef struct tyni_sight {
+    tyni_vec3 o, d;
+} tyni_sight;
+
+static inline tyni_vec3 tyni_sight_at(const tyni_sight *v, float t)
+{
+    return tyni_vec_mad(v->o, t, v->d);
+}
+
+static inline tyni_vec3 tyni_view_plane(const tyni_view *view, float px, float py)
 {
     return tyni_vec_mad(tyni_vec_mad(view->origin, px, view->dx), py, view->dy);
+}
+
+/* The ray through a point of the pixel plane; returns its length per depth. */
+static inline float tyni_view_sight(const tyni_view *view, float px, float py, tyni_sight *v)
+{
+    tyni_vec3 d = tyni_view_plane(view, px, py);
+    float length;
+    if (view->orthographic) {
+        v->o = d;
+        v->d = view->forward;
+        return 1.0f;
+    }
+    length = tyni_vec_length(d);
+    v->o = tyni_vec(0.0f, 0.0f, 0.0f);
+    v->d = tyni_vec_scale(d, 1.0f / length);
+    return length;
+}
+
+/* The point of a pixel at a depth. */
+static inline tyni_vec3 tyni_view_point(const tyni_view *view, float px, float py, float depth)
+{
+    tyni_vec3 d = tyni_view_plane(view, px, py);
+    return view->orthographic ? tyni_vec_mad(d, depth, view->forward) : tyni_vec_scale(d, depth);
 }
 
 /* A depth buffer's value as the length of its ray in depths: 0 .. far; NaN and infinity are far. */
@@ -52,7 +87,7 @@ typedef struct tyni_lamp {
     float radius; /* spot, point: 1 / r^2 grows no further inside it; a hundredth of the near depth, or 1e-4 of the distance */
     tyni_vec3 axis; /* the way the light travels, of length 1 */
     float cos_half; /* spot: of half the cone's angle */
-    int at_camera;  /* the light is where the camera is: there is no epipole */
+    int no_epipole; /* the light is where the camera is, or an orthographic camera looks along it */
     /* Epipole in homogeneous pixel coordinates with w >= 0. `behind`: it is the antipode's image, and slopes grow along a line
      * away from it instead of falling. */
     float ex, ey, ew;
@@ -69,9 +104,9 @@ typedef struct tyni_lamp {
 
 void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view);
 
-/* The part of the ray t * v (|v| = 1, t0 <= t <= t1) inside the volume that the light reaches: a spot's cone, or the frustum or
+/* The part t0 .. t1 of a ray inside the volume that the light reaches: a spot's cone, or the frustum or
  * column of its slide. 0 if there is none. */
-int tyni_view_clip(const tyni_lamp *lamp, tyni_vec3 v, float *t0, float *t1);
+int tyni_view_clip(const tyni_lamp *lamp, const tyni_sight *v, float *t0, float *t1);
 
 /* True if that is not all space. */
 static inline int tyni_view_bounded(const tyni_lamp *lamp)
