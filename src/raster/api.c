@@ -175,6 +175,8 @@ static tyn_status check_surface(const tyn_raster *raster, const tyn_surface *sur
     status = check_targets(raster, surface);
     if (status == TYN_OK)
         status = tyni_check_camera(&surface->camera);
+    if (status == TYN_OK && surface->camera.kind != TYN_CAMERA_PERSPECTIVE)
+        status = TYN_E_CAMERA;
     if (status == TYN_OK)
         status = check_lights(surface->lights, surface->light_count);
     if (status == TYN_OK)
