@@ -506,7 +506,7 @@ typedef struct tyn_query_result {
  * The frame may be the very one given to tyn_render: camera, lights, media, the art controls and the executor count, and of
  * `depth` the width and height alone (the image's pixels may be NULL). The rest is not looked at. Each point is computed by an
  * exact ray of its own, as TYN_METHOD_MARCH has it, and costs as much. It needs no context; several calls may run at once.
- * Jobs are 64 points each, for each light; an executor may have up to TYN_MAX_WORKERS workers. Up to TYN_MAX_LIGHTS lights.
+ * Jobs are 64 points each; an executor may have up to TYN_MAX_WORKERS workers. Up to TYN_MAX_LIGHTS lights.
  * A point with x or y not finite gets scatter 0 and transmittance 1. `results` must not overlap `points`.
  * TYN_E_NULL (points and results may be NULL with count 0), TYN_E_LIMIT (count < 0, too many lights or maps), TYN_E_ALIGN,
  * TYN_E_IMAGE (size), TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_MEDIUM, TYN_E_EXECUTOR. */

@@ -438,7 +438,6 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
     memset(&stats, 0, sizeof stats);
     jobs.executor = frame->executor;
     jobs.counts = context->counts;
-    jobs.plain = NULL;
     jobs.workers = frame->executor ? frame->executor->workers : 1;
     for (int32_t w = 0; w < context->config.workers; w++) {
         tyni_scratch s;

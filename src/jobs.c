@@ -10,26 +10,22 @@ typedef struct call {
     int32_t count;
 } call;
 
-static int32_t *count_of(const tyni_jobs *jobs, int32_t worker)
-{
-    return jobs->plain ? &jobs->plain[worker] : &jobs->counts[worker].done;
-}
-
 static void counted(void *argument, int32_t index, int32_t worker)
 {
     const call *c = argument;
     if (worker < 0 || worker >= c->jobs->workers || index < 0 || index >= c->count)
         return;
     c->job(c->argument, index, worker);
-    ++*count_of(c->jobs, worker);
+    if (c->jobs->counts)
+        c->jobs->counts[worker].done++;
 }
 
 tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int32_t count)
 {
     call c = {jobs, job, argument, count};
     int32_t done = 0;
-    for (int32_t w = 0; w < jobs->workers; w++)
-        *count_of(jobs, w) = 0;
+    for (int32_t w = 0; w < jobs->workers && jobs->counts; w++)
+        jobs->counts[w].done = 0;
     if (jobs->executor) {
         if (count > 0)
             jobs->executor->run(jobs->executor->context, counted, &c, count);
@@ -37,8 +33,10 @@ tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int
         for (int32_t i = 0; i < count; i++)
             counted(&c, i, 0);
     }
+    if (!jobs->counts)
+        return TYN_OK;
     for (int32_t w = 0; w < jobs->workers; w++)
-        done += *count_of(jobs, w);
+        done += jobs->counts[w].done;
     return done == count ? TYN_OK : TYN_E_EXECUTOR;
 }
 

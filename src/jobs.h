@@ -12,13 +12,12 @@ typedef struct tyni_jobs_count {
 
 typedef struct tyni_jobs {
     const tyn_executor *executor; /* NULL: the calling thread */
-    tyni_jobs_count *counts;      /* one per worker, in the arena */
-    int32_t *plain;               /* or, for a call without an arena, these; else NULL */
+    tyni_jobs_count *counts;      /* one per worker, in the arena; NULL: nothing is counted, the jobs tell by what they did */
     int32_t workers;              /* room in counts and in the scratch; 1 .. TYN_MAX_WORKERS */
 } tyni_jobs;
 
 /* Runs job(argument, i, worker) for i in 0 .. count - 1. TYN_E_EXECUTOR if the number of finished jobs is not count, or a
- * worker number was out of range (that call then did nothing). */
+ * worker number was out of range (that call then did nothing); without counts always TYN_OK. */
 tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int32_t count);
 
 /* TYN_E_EXECUTOR for an executor without run, or with workers outside 1 .. limit; NULL is right. */
