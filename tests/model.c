@@ -186,16 +186,44 @@ static int read_medium(oracle_scene *scene, const char *line)
     return m->phase != TYN_PHASE_HG || key(line, "hg", &m->g, 1);
 }
 
-static int read_light(oracle_scene *scene, const char *line)
+/* A binary PPM of 8 bits, linear; what the reference scenes have. */
+static float *read_ppm(const char *path, int *width, int *height)
+{
+    FILE *file = fopen(path, "rb");
+    float *rgb = NULL;
+    if (file && fscanf(file, "P6 %d %d 255", width, height) == 2 && fgetc(file) != EOF) {
+        size_t count = 3 * (size_t)*width * (size_t)*height;
+        rgb = malloc(count * sizeof *rgb);
+        for (size_t i = 0; rgb && i < count; i++)
+            rgb[i] = (float)fgetc(file) / 255.0f;
+    }
+    if (file)
+        fclose(file);
+    return rgb;
+}
+
+/* "texture F.ppm", beside the scene file. */
+static int read_texture(oracle_light *light, const char *line, const char *path)
+{
+    const char *name = strstr(line, " texture "), *slash = strrchr(path, '/');
+    char full[1024];
+    if (!name)
+        return 1;
+    snprintf(full, sizeof full, "%.*s%.*s", slash ? (int)(slash + 1 - path) : 0, path, (int)strcspn(name + 9, " "), name + 9);
+    light->texture.rgb = read_ppm(full, &light->texture.width, &light->texture.height);
+    light->texture.up[1] = 1;
+    key(line, "up", light->texture.up, 3);
+    return light->texture.rgb && (light->kind == ORACLE_SPOT || key(line, "extent", light->texture.extent, 2));
+}
+
+static int read_light(oracle_scene *scene, const char *line, const char *path)
 {
     double target[3], angle;
-    if (strstr(line, "texture"))
-        return 0;
     if (strncmp(line, "light directional ", 18) == 0) {
         oracle_light *light = new_light(scene, ORACLE_DIRECTIONAL);
         int read = key(line, "direction", light->direction, 3) && key(line, "irradiance", light->colour, 3);
         normalise(light->direction);
-        return read;
+        return read && read_texture(light, line, path);
     }
     if (strncmp(line, "light point ", 12) == 0) {
         oracle_light *light = new_light(scene, ORACLE_POINT);
@@ -209,12 +237,12 @@ static int read_light(oracle_scene *scene, const char *line)
             light->direction[k] = target[k] - light->position[k];
         normalise(light->direction);
         light->cosine = cos(RADIANS(angle) / 2);
-        return key(line, "intensity", light->colour, 3);
+        return key(line, "intensity", light->colour, 3) && read_texture(light, line, path);
     }
     return 0;
 }
 
-static int read_line(oracle_scene *scene, const char *line)
+static int read_line(oracle_scene *scene, const char *line, const char *path)
 {
     double a[3], b[3], c[3], albedo[3], up[3] = {0, 1, 0}, fov, reach[2];
     if (line[0] == '#' || line[0] == '\0' || strcmp(line, "tyndall-scene 1") == 0)
@@ -236,7 +264,7 @@ static int read_line(oracle_scene *scene, const char *line)
     if (strncmp(line, "medium ", 7) == 0)
         return read_medium(scene, line);
     if (strncmp(line, "light ", 6) == 0)
-        return read_light(scene, line);
+        return read_light(scene, line, path);
     if (strncmp(line, "quad ", 5) == 0 && key(line, "a", a, 3) && key(line, "b", b, 3) && key(line, "c", c, 3) &&
         key(line, "albedo", albedo, 3)) {
         parallelogram(scene, a, b, c, albedo);
@@ -256,7 +284,7 @@ oracle_scene *model_read(const char *path)
     oracle_scene *scene = model_new(1, 1);
     while (file && scene && fgets(line, sizeof line, file)) {
         line[strcspn(line, "\r\n")] = '\0';
-        if (!read_line(scene, line)) {
+        if (!read_line(scene, line, path)) {
             fprintf(stderr, "%s: %s: not for these tests\n", path, line);
             model_free(scene);
             scene = NULL;

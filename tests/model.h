@@ -18,7 +18,7 @@ void model_sun(oracle_scene *scene, double dx, double dy, double dz, double irra
 void model_spot(oracle_scene *scene, double px, double py, double pz, double tx, double ty, double tz, double angle_degrees,
                 double intensity);
 
-/* Reads a scene file of quads, boxes and untextured lights. NULL, with a line in stderr, where it has more than that. */
+/* Reads a scene file of quads, boxes and lights. NULL, with a line in stderr, where it has more than that. */
 oracle_scene *model_read(const char *path);
 
 /* A PFM's floats, top row first, in memory from malloc; NULL on failure. channels is 1 or 3. */

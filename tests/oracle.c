@@ -81,6 +81,67 @@ static void make_volume(const oracle_polygon *p, const oracle_light *light, orac
     volume->planes = p->corners + 1;
 }
 
+/* Texel coordinates of a point, and the planes of the texture's four edges. */
+static void make_texture(oracle_light *light)
+{
+    oracle_texture *texture = &light->texture;
+    double right[3], up[3], half[2], size;
+    const double *forward = light->direction, *origin = light->position;
+    cross(forward, texture->up, right);
+    size = length(right);
+    for (int k = 0; k < 3; k++)
+        right[k] /= size;
+    cross(right, forward, up);
+    half[0] = half[1] = sqrt(1.0 - light->cosine * light->cosine) / light->cosine;
+    if (light->kind == ORACLE_DIRECTIONAL) {
+        half[0] = texture->extent[0] / 2;
+        half[1] = texture->extent[1] / 2;
+    }
+    for (int k = 0; k < 3; k++) {
+        /* (x / w + 1) / 2 * width with x = right . (p - origin) / half */
+        texture->w[k] = light->kind == ORACLE_SPOT ? forward[k] : 0.0;
+        texture->x[k] = 0.5 * texture->width * (right[k] / half[0] + texture->w[k]);
+        texture->y[k] = 0.5 * texture->height * (-up[k] / half[1] + texture->w[k]);
+    }
+    texture->w[3] = light->kind == ORACLE_SPOT ? -dot(texture->w, origin) : 1.0;
+    texture->x[3] = light->kind == ORACLE_SPOT ? -dot(texture->x, origin) : 0.5 * texture->width;
+    texture->y[3] = light->kind == ORACLE_SPOT ? -dot(texture->y, origin) : 0.5 * texture->height;
+    for (int k = 0; k < 4; k++)
+        for (int i = 0; i < 4; i++) {
+            const double *low = i < 2 ? texture->x : texture->y;
+            double most = i < 2 ? texture->width : texture->height;
+            double value = i % 2 ? most * texture->w[k] - low[k] : low[k];
+            if (k < 3)
+                texture->edge[i].n[k] = value;
+            else
+                texture->edge[i].d = -value;
+        }
+}
+
+static double affine(const double row[4], const double p[3])
+{
+    return dot(row, p) + row[3];
+}
+
+static void texture_at(const oracle_texture *t, const double p[3], double out[3])
+{
+    double w = affine(t->w, p), at[2] = {affine(t->x, p) / w - 0.5, affine(t->y, p) / w - 0.5};
+    int size[2] = {t->width, t->height}, low[2], high[2];
+    for (int i = 0; i < 2; i++) {
+        at[i] = fmin(fmax(at[i], 0.0), size[i] - 1.0);
+        low[i] = (int)at[i];
+        high[i] = low[i] + 1 < size[i] ? low[i] + 1 : low[i];
+        at[i] -= low[i];
+    }
+    for (int k = 0; k < 3; k++) {
+        double a = (double)t->rgb[3 * (low[1] * t->width + low[0]) + k],
+               b = (double)t->rgb[3 * (low[1] * t->width + high[0]) + k];
+        double c = (double)t->rgb[3 * (high[1] * t->width + low[0]) + k],
+               d = (double)t->rgb[3 * (high[1] * t->width + high[0]) + k];
+        out[k] = (a + (b - a) * at[0]) * (1 - at[1]) + (c + (d - c) * at[0]) * at[1];
+    }
+}
+
 int oracle_prepare(oracle_scene *scene)
 {
     size_t count = (size_t)scene->polygons + 1;
@@ -98,6 +159,8 @@ int oracle_prepare(oracle_scene *scene)
             p->normal[k] /= size;
     }
     for (int l = 0; l < scene->lights; l++) {
+        if (scene->light[l].texture.rgb)
+            make_texture(&scene->light[l]);
         scene->light[l].volume = malloc(count * sizeof *scene->light[l].volume);
         ready = ready && scene->light[l].volume;
         for (int i = 0; ready && i < scene->polygons; i++)
@@ -115,6 +178,8 @@ void oracle_release(oracle_scene *scene)
     for (int l = 0; l < scene->lights; l++) {
         free(scene->light[l].volume);
         scene->light[l].volume = NULL;
+        free(scene->light[l].texture.rgb);
+        scene->light[l].texture.rgb = NULL;
     }
 }
 
@@ -186,20 +251,25 @@ static double scattering(const oracle_scene *scene, int channel, double cosine)
 static int in_cone(const oracle_light *light, const double point[3])
 {
     double to[3];
-    if (light->kind != ORACLE_SPOT)
-        return 1;
+    for (int i = 0; i < 4 && light->texture.rgb; i++)
+        if (dot(light->texture.edge[i].n, point) < light->texture.edge[i].d)
+            return 0;
+    if (light->kind != ORACLE_SPOT || light->texture.rgb)
+        return !light->texture.rgb || affine(light->texture.w, point) > 0.0;
     subtract(point, light->position, to);
     return dot(to, light->direction) >= light->cosine * length(to);
 }
 
 double oracle_irradiance(const oracle_light *light, const double point[3], double sigma, int channel)
 {
-    double to[3], r;
+    double to[3], r, tint[3] = {1.0, 1.0, 1.0};
+    if (light->texture.rgb)
+        texture_at(&light->texture, point, tint);
     if (light->kind == ORACLE_DIRECTIONAL)
-        return light->colour[channel];
+        return light->colour[channel] * tint[channel];
     subtract(point, light->position, to);
     r = length(to);
-    return light->colour[channel] * exp(-sigma * r) / (r * r);
+    return light->colour[channel] * tint[channel] * exp(-sigma * r) / (r * r);
 }
 
 int oracle_lit(const oracle_scene *scene, const oracle_light *light, const double point[3], int except)
@@ -238,12 +308,20 @@ static const double node[8] = {0.0950125098376374402, 0.2816035507792589132, 0.4
 static const double weight[8] = {0.1894506104550684963, 0.1826034150449235889, 0.1691565193950025382, 0.1495959888165767321,
                                  0.1246289712555338720, 0.0951585116824927848, 0.0622535239386478929, 0.0271524594117540949};
 
-/* In the angle phi at the light, where t = foot + h tan(phi), dt / rho^2 = d phi / h has no pole (Sun et al. 2005). */
-static void integrand(const beam *b, double phi, double out[3])
+/* In the angle phi at the light, where t = foot + h tan(phi), dt / rho^2 = d phi / h has no pole (Sun et al. 2005). A sun is
+ * integrated in t. */
+static void integrand(const beam *b, double at, double out[3])
 {
-    double t = b->foot + b->h * tan(phi), rho = b->h / cos(phi);
+    int sun = b->light->kind == ORACLE_DIRECTIONAL;
+    double t = sun ? at : b->foot + b->h * tan(at), rho = sun ? 0.0 : b->h / cos(at), point[3];
+    double cosine = sun ? -dot(b->light->direction, b->v) : -sin(at), tint[3] = {1.0, 1.0, 1.0};
+    if (b->light->texture.rgb) {
+        along(b->scene->camera.position, b->v, t, point);
+        texture_at(&b->light->texture, point, tint);
+    }
     for (int k = 0; k < 3; k++)
-        out[k] = exp(-oracle_extinction(b->scene, k) * (t + rho)) * scattering(b->scene, k, -sin(phi)) / b->h;
+        out[k] =
+            tint[k] * exp(-oracle_extinction(b->scene, k) * (t + rho)) * scattering(b->scene, k, cosine) / (sun ? 1.0 : b->h);
 }
 
 static void panel(const beam *b, double from, double to, double out[3])
@@ -267,7 +345,8 @@ static void adaptive(const beam *b, double from, double to, const double whole[3
         gap = fmax(gap, fabs(left[k] + right[k] - whole[k]));
         size = fmax(size, left[k] + right[k]);
     }
-    if (gap <= 1e-11 * size || depth == 0) {
+    /* the ends carry rounding errors, which a sliver feels: it would never agree with its halves */
+    if (gap <= (1e-11 + 4e-15 / (to - from)) * size || depth == 0) {
         for (int k = 0; k < 3; k++)
             out[k] += left[k] + right[k];
         return;
@@ -276,12 +355,18 @@ static void adaptive(const beam *b, double from, double to, const double whole[3
     adaptive(b, middle, to, right, depth - 1, out);
 }
 
-/* Adds the light of the lit stretch from .. to of a ray. */
-static void add_lit(const oracle_scene *scene, const oracle_light *light, const double v[3], double from, double to,
-                    double out[3])
+/* Adds the light of a lit stretch from .. to of a ray within which a texture has no kink. */
+static void add_smooth(const oracle_scene *scene, const oracle_light *light, const double v[3], double from, double to,
+                       double out[3])
 {
     double lamp[3], whole[3], sum[3] = {0.0, 0.0, 0.0}, rim[3];
     beam b = {scene, light, v, 0.0, 0.0};
+    if (light->kind == ORACLE_DIRECTIONAL && light->texture.rgb) {
+        panel(&b, from, to, sum);
+        for (int k = 0; k < 3; k++)
+            out[k] += light->colour[k] * sum[k];
+        return;
+    }
     if (light->kind == ORACLE_DIRECTIONAL) {
         for (int k = 0; k < 3; k++) {
             double sigma = oracle_extinction(scene, k), path = to - from;
@@ -298,9 +383,42 @@ static void add_lit(const oracle_scene *scene, const oracle_light *light, const 
     from = atan((from - b.foot) / b.h);
     to = atan((to - b.foot) / b.h);
     panel(&b, from, to, whole);
-    adaptive(&b, from, to, whole, 40, sum);
+    /* Within a texel little is left to adapt to, and where its light is all but 0 the halves would never agree. */
+    adaptive(&b, from, to, whole, light->texture.rgb ? 4 : 40, sum);
     for (int k = 0; k < 3; k++)
         out[k] += light->colour[k] * sum[k];
+}
+
+static int by_start(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Adds a lit stretch: cut where the ray crosses the lines between texel centres, since bilinear light has a kink there. */
+static void add_lit(const oracle_scene *scene, const oracle_light *light, const double v[3], double from, double to,
+                    double out[3])
+{
+    enum { MOST = 4096 };
+    static double cut[MOST];
+    const oracle_texture *texture = &light->texture;
+    size_t count = 0;
+    cut[count++] = from;
+    for (int axis = 0; axis < 2 && texture->rgb; axis++) {
+        const double *row = axis ? texture->y : texture->x, *c = scene->camera.position;
+        int size = axis ? texture->height : texture->width;
+        for (int i = 0; i < size && count < MOST - 1; i++) { /* (row . (c + t v)) = (i + 0.5) (w . (c + t v)) */
+            double line = i + 0.5, slope = dot(row, v) - line * dot(texture->w, v);
+            double t = (line * affine(texture->w, c) - affine(row, c)) / slope;
+            if (slope != 0.0 && t > from && t < to)
+                cut[count++] = t;
+        }
+    }
+    cut[count++] = to;
+    qsort(cut, count, sizeof *cut, by_start);
+    for (size_t i = 0; i + 1 < count; i++)
+        if (cut[i] < cut[i + 1])
+            add_smooth(scene, light, v, cut[i], cut[i + 1], out);
 }
 
 /* Shrinks a .. b to the cone; 0 when nothing is left. A cone of less than 180 degrees is convex: one interval. */
@@ -308,7 +426,10 @@ static int clip_cone(const oracle_scene *scene, const oracle_light *light, const
 {
     double q[3], qa, va, cc = light->cosine * light->cosine, A, B, C, root[2], mark[4], point[3], first = 0.0, last = -1.0;
     int marks = 0;
-    if (light->kind != ORACLE_SPOT)
+    for (int i = 0; i < 4 && light->texture.rgb; i++)
+        if (!clip(&light->texture.edge[i], scene->camera.position, v, a, b))
+            return 0;
+    if (light->kind != ORACLE_SPOT || light->texture.rgb)
         return *a < *b;
     subtract(scene->camera.position, light->position, q);
     qa = dot(q, light->direction);
@@ -342,12 +463,6 @@ static int clip_cone(const oracle_scene *scene, const oracle_light *light, const
     *a = first;
     *b = last;
     return first < last;
-}
-
-static int by_start(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 static void scatter_light(const oracle_scene *scene, const oracle_light *light, const double v[3], double s, double out[3])

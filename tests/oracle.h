@@ -32,11 +32,21 @@ typedef struct oracle_volume {
     oracle_plane plane[ORACLE_CORNERS + 1];
 } oracle_volume;
 
+/* Multiplies a light's colour, bilinear, dark outside; scene-format.md says how it lies. rgb NULL: none. */
+typedef struct oracle_texture {
+    int width, height;
+    float *rgb; /* from malloc; oracle_release gives it back */
+    double up[3], extent[2];
+    double x[4], y[4], w[4]; /* texels of a point: (x, y) / w, each a dot product with (p, 1); by oracle_prepare */
+    oracle_plane edge[4];    /* inside of it */
+} oracle_texture;
+
 typedef struct oracle_light {
     oracle_kind kind;
     double position[3], direction[3], colour[3];
-    double cosine;         /* spot: of half the cone's angle */
-    oracle_volume *volume; /* of each polygon; by oracle_prepare */
+    double cosine;          /* spot: of half the cone's angle */
+    oracle_texture texture; /* of a sun (gobo) or a spot (slide: a square frustum, not a cone) */
+    oracle_volume *volume;  /* of each polygon; by oracle_prepare */
 } oracle_light;
 
 typedef struct oracle_medium {

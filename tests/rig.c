@@ -78,6 +78,14 @@ static void make_lights(rig *r, const oracle_scene *scene)
         narrow(to->direction, from->direction, 3);
         narrow(to->colour, from->colour, 3);
         to->angle = from->kind == ORACLE_SPOT ? (float)(2 * acos(from->cosine)) : 0.0f;
+        if (from->texture.rgb) {
+            tyn_image image = {from->texture.rgb, from->texture.width, from->texture.height, 0, TYN_RGB_F32};
+            r->texture[i] = image;
+            to->textures = &r->texture[i];
+            to->texture_count = 1;
+            narrow(to->up, from->texture.up, 3);
+            narrow(to->extent, from->texture.extent, 2);
+        }
     }
     for (int i = 0; i < scene->media; i++) {
         const oracle_medium *from = &scene->medium[i];
@@ -224,12 +232,15 @@ rig *rig_stock(const char *name, int width, int height, int32_t shadow_size)
     return r;
 }
 
-int32_t rig_maps(const rig *r)
+void rig_fill(const rig *r, tyn_config *config)
 {
-    int32_t maps = 1;
-    for (int i = 0; i < r->lights; i++)
-        maps = r->light[i].more_count + 1 > maps ? r->light[i].more_count + 1 : maps;
-    return maps;
+    config->shadow_size = r->shadow_size;
+    config->lights = r->lights > 1 ? r->lights : 1;
+    config->maps = 1;
+    for (int i = 0; i < r->lights; i++) {
+        config->maps = r->light[i].more_count + 1 > config->maps ? r->light[i].more_count + 1 : config->maps;
+        config->textured |= r->light[i].texture_count > 0;
+    }
 }
 
 tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays)
@@ -238,9 +249,7 @@ tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays)
     memset(&config, 0, sizeof config);
     config.width = r->width;
     config.height = r->height;
-    config.shadow_size = r->shadow_size;
-    config.lights = r->lights > 1 ? r->lights : 1;
-    config.maps = rig_maps(r);
+    rig_fill(r, &config);
     config.method = method;
     config.rays = rays;
     return config;

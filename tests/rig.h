@@ -8,6 +8,7 @@ typedef struct rig {
     int32_t width, height;
     tyn_camera camera;
     tyn_light light[ORACLE_LIGHTS];
+    tyn_image texture[ORACLE_LIGHTS]; /* its pixels are the model's: a textured rig is used before its model is freed */
     tyn_medium medium[ORACLE_MEDIA];
     int32_t lights, media, meshes;
     tyn_mesh *mesh;
@@ -37,8 +38,8 @@ typedef struct rig_way {
 enum { RIG_WAYS = 5 };
 extern const rig_way rig_ways[RIG_WAYS];
 
-/* The most shadow maps that a light of the rig has. */
-int32_t rig_maps(const rig *r);
+/* What a config must have room for: shadow size, lights, maps of a light, textures. */
+void rig_fill(const rig *r, tyn_config *config);
 
 /* A config of the rig's size and lights with the method; the rest is left 0. */
 tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays);

@@ -11,6 +11,7 @@ typedef struct stock {
     double target[3]; /* spot */
     double angle;     /* spot, degrees */
     double air;       /* scattering of the haze, 1/m */
+    int textured;     /* a window of 16 x 16 panes in the light: a slide, a gobo 8 metres wide */
     double pitch;     /* height of the camera's target: 1.8 looks level */
 } stock;
 

@@ -12,25 +12,26 @@
 #define HEIGHT 96
 #define SHADOW 1024
 
-/* A method, and the relative L1 of L_scat that it may have: for a scene, and over all. Measured, plus a quarter. */
+/* A method, and the relative L1 of L_scat that it may have: for a scene, over all, and for a scene with a light texture, which
+ * is the hardest there is. Measured, plus a quarter. */
 typedef struct way {
     const char *name;
     tyn_method method;
     tyn_rays rays;
     tyn_preset preset;
-    double worst, mean;
+    double worst, mean, textured;
     double sum;
     int count;
 } way;
 
 static way ways[] = {
-    {"march", TYN_METHOD_MARCH, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0.0035, 0.0010, 0, 0},
-    {"march in steps", TYN_METHOD_MARCH, TYN_RAYS_STEPS, TYN_PRESET_QUALITY, 0.0210, 0.0027, 0, 0},
-    {"epipolar", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0.0033, 0.0014, 0, 0},
-    {"epipolar balanced", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 0.0200, 0.0052, 0, 0},
-    {"epipolar handheld", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_HANDHELD, 0.0365, 0.0080, 0, 0},
-    {"epipolar in steps", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, TYN_PRESET_QUALITY, 0.0210, 0.0029, 0, 0},
-    {"subsample", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 0.0315, 0.0055, 0, 0},
+    {"march", TYN_METHOD_MARCH, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0.0035, 0.0010, 0.0192, 0, 0},
+    {"march in steps", TYN_METHOD_MARCH, TYN_RAYS_STEPS, TYN_PRESET_QUALITY, 0.0210, 0.0027, 0.0195, 0, 0},
+    {"epipolar", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0.0033, 0.0014, 0.0273, 0, 0},
+    {"epipolar balanced", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 0.0200, 0.0052, 0.2170, 0, 0},
+    {"epipolar handheld", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_HANDHELD, 0.0365, 0.0080, 0.6200, 0, 0},
+    {"epipolar in steps", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, TYN_PRESET_QUALITY, 0.0210, 0.0029, 0.0225, 0, 0},
+    {"subsample", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 0.0315, 0.0055, 0.2010, 0, 0},
 };
 enum { WAYS = (int)(sizeof ways / sizeof *ways) };
 
@@ -69,8 +70,7 @@ static void check_scene(const stock *s, int say)
         tyn_frame frame = rig_frame(r);
         double gap;
         CHECK(tyn_config_preset(&config, w->preset, WIDTH, HEIGHT) == TYN_OK);
-        config.shadow_size = SHADOW;
-        config.maps = rig_maps(r);
+        rig_fill(r, &config);
         config.method = w->method;
         config.rays = w->rays;
         config.steps = 200;
@@ -80,9 +80,9 @@ static void check_scene(const stock *s, int say)
         gap = rig_l1(r->scatter, truth, 3 * pixels);
         if (say)
             printf("  %-30s %-18s L1 %.4f, rays %.1f %%\n", s->name, w->name, gap, (double)r->stats.rays_percent);
-        CHECK_NEAR(gap, 0, w->worst);
-        w->sum += gap;
-        w->count++;
+        CHECK_NEAR(gap, 0, s->textured ? w->textured : w->worst);
+        w->sum += s->textured ? 0 : gap;
+        w->count += !s->textured;
         if (i == 0)
             memcpy(exact, r->target, sizeof exact);
         if (w->method == TYN_METHOD_EPIPOLAR && w->rays == TYN_RAYS_WORDS && w->preset == TYN_PRESET_QUALITY) {
@@ -193,7 +193,7 @@ static int by_size(const void *a, const void *b)
  * camera: no frame is much worse than the others. The error is relative, to the exact march of the same map. */
 static void check_path(int say)
 {
-    enum { W = 64, H = 48, TURNS = 48, HEIGHTS = 3, FRAMES = TURNS * HEIGHTS };
+    enum { W = 64, H = 48, TURNS = 24, HEIGHTS = 3, FRAMES = TURNS * HEIGHTS };
     static const double heights[HEIGHTS] = {0.12, 0.5773502691896258, 1.2};
     static float exact[3 * W * H];
     double gaps[FRAMES], sorted[FRAMES];

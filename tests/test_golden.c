@@ -42,8 +42,7 @@ static rig *render(int i, golden *out)
     CHECK(scatter && tyn_config_preset(&config, pictures[i].preset, WIDTH, HEIGHT) == TYN_OK);
     config.method = pictures[i].method;
     config.rays = pictures[i].rays;
-    config.shadow_size = 256;
-    config.maps = rig_maps(r);
+    rig_fill(r, &config);
     frame.scatter.pixels = scatter;
     frame.display.dither = pictures[i].dither;
     CHECK(rig_render(r, &config, &frame) == TYN_OK);

@@ -153,8 +153,8 @@ static void test_phase(void)
     }
 }
 
-/* Every 5th pixel each way, from a corner of its own per scene. */
-static void test_reference(const char *name, int from)
+/* Every step-th pixel each way, from a corner of its own per scene. */
+static void test_reference(const char *name, int from, int step)
 {
     char path[128];
     int width, height, channels, count = 0, wrong_depth = 0;
@@ -178,8 +178,8 @@ static void test_reference(const char *name, int from)
     CHECK(scene && scatter && radiance && depth && oracle_prepare(scene));
     if (scene && scene->scratch && scatter && radiance && depth) {
         CHECK(width == scene->width && height == scene->height && channels == 3);
-        for (int y = from; y < height; y += 5)
-            for (int x = from; x < width; x += 5) {
+        for (int y = from; y < height; y += step)
+            for (int x = from; x < width; x += step) {
                 oracle_pixel pixel;
                 int at = y * width + x;
                 oracle_trace(scene, x + 0.5, y + 0.5, &pixel);
@@ -193,7 +193,7 @@ static void test_reference(const char *name, int from)
                     radiance_sum += (double)radiance[3 * at + k];
                 }
             }
-        CHECK(count > 5000);
+        CHECK(count > 1000);
         CHECK_NEAR(gap / sum, 0.0, 2e-6);
         CHECK_NEAR(radiance_gap / radiance_sum, 0.0, 1e-5);
         CHECK_NEAR(wrong_depth, 0, 2);
@@ -211,9 +211,11 @@ void test_oracle(void)
     test_phase();
     test_brute();
     TEST("oracle: reference 01_pillars");
-    test_reference("01_pillars", 2);
+    test_reference("01_pillars", 2, 5);
     TEST("oracle: reference 02_grating");
-    test_reference("02_grating", 3);
+    test_reference("02_grating", 3, 5);
+    TEST("oracle: reference 05_stained");
+    test_reference("05_stained", 4, 11);
     TEST("oracle: reference 07_cage");
-    test_reference("07_cage", 1);
+    test_reference("07_cage", 1, 5);
 }
