@@ -28,7 +28,9 @@ typedef struct tyni_piece {
     tyni_form r, w;
 } tyni_piece;
 
-#define TYNI_ROW_PIECES 14
+/* 8 maps are 8 intervals of columns, which cut each other into 15 at most; one more where the two quarters of a local light
+ * meet. */
+#define TYNI_ROW_PIECES 16
 
 typedef struct tyni_row {
     int32_t count;          /* of pieces; 0: the slice misses all maps */
