@@ -14,7 +14,8 @@
  *  - World space is right-handed; the unit of length is yours, "metres" below. Angles are radians.
  *  - Pixel (0, 0) is the top left one; it is sampled at its centre (0.5, 0.5). Rows run downwards.
  *  - Colours and light are linear RGB radiometric values: radiance W/(m2 sr), irradiance W/m2, intensity W/sr.
- *  - "Depth" is view-space depth: the distance along the camera's forward axis, not along the ray.
+ *  - "Depth" is view-space depth: the distance along the camera's forward axis, not along the ray. (Depth buffers of other
+ *    conventions: tyn_depth_coding, tyn_map_coding.)
  *  - Matrices are row-major 4x4, applied to column vectors: out[r] = sum over c of m[4 * r + c] * in[c].
  *  - A pointer is read only during the call it is given to, but for the memory given to an ..._init.
  *  - Every call checks its arguments before it writes anything. A negative status means that nothing was written.
@@ -44,7 +45,7 @@ typedef enum tyn_status {
     TYN_E_CONFIG = -2,   /* a field of a config is outside its range */
     TYN_E_MEMORY = -3,   /* the block is smaller than ..._measure says */
     TYN_E_ALIGN = -4,    /* the block is not aligned to TYN_ALIGNMENT, or pixels are not aligned to their components */
-    TYN_E_IMAGE = -5,    /* an image has a wrong size, format or stride */
+    TYN_E_IMAGE = -5,    /* an image has a wrong size, format, stride or coding */
     TYN_E_CAMERA = -6,   /* camera: not finite, axes not orthonormal, empty window, or not 0 < near < far */
     TYN_E_LIGHT = -7,    /* light: not finite, colour < 0, direction not of length 1, angle or shadow map out of range */
     TYN_E_MEDIUM = -8,   /* medium: not finite, coefficient < 0, or g outside -1 .. 1; or a frame's art control out of range */
@@ -445,7 +446,7 @@ typedef struct tyn_depth_coding {
                               -1, 1 OpenGL's before its viewport. Both 0: 0, 1 */
     float
         near_depth;  /* projected: the planes of that projection, 0 < near < far, which need not be the camera's. 0: they are */
-    float far_depth; /* HUGE_VALF or INFINITY: a projection without a far plane */
+    float far_depth; /* HUGE_VALF or INFINITY: a perspective without a far plane */
     int32_t has_sky; /* not 0: `sky` is a mark */
     float sky;       /* a stored value as it is: of an integer format the integer, such as 0 or 65535 */
 } tyn_depth_coding;
@@ -459,7 +460,7 @@ typedef struct tyn_frame {
     tyn_image colour; /* radiance of the surfaces without medium: TYN_RGB_F32, or an 8-bit or 565 format, decoded as sRGB with 1
                          = display white. May share pixels, stride and format with target (in place). pixels NULL: black.
                          In TYN_RGB_F32 negative values and NaN mean 0 */
-    tyn_image target; /* the picture; pixels NULL: none wanted. Not TYN_DEPTH_F32, not a texture format */
+    tyn_image target; /* the picture; pixels NULL: none wanted. Not a depth, not a texture format */
     tyn_image scatter;       /* L_scat as TYN_RGB_F32, without exposure; pixels NULL: none wanted */
     tyn_image transmittance; /* exp(-extinction s) as TYN_RGB_F32, 0 .. 1: with `scatter` all that is needed to put the medium
                                 over a picture later; pixels NULL: none wanted */

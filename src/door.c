@@ -28,7 +28,9 @@ tyn_status tyni_door_check(const tyn_depth_coding *coding, const tyn_camera *cam
     if (coding->kind != TYN_CODING_PROJECTED)
         return TYN_OK;
     planes(coding, camera, depth);
-    /* an infinite far plane is one: 1 / far is 0 */
+    /* an infinite far plane is one under a perspective: 1 / far is 0 */
+    if (camera->kind == TYN_CAMERA_ORTHOGRAPHIC && !tyni_finite(depth[1]))
+        return TYN_E_IMAGE;
     if (!tyni_check_range(coding->at_near, coding->at_far, ends) || !(depth[0] >= 1e-20f) || !(depth[0] < depth[1]))
         return TYN_E_IMAGE;
     return TYN_OK;
@@ -63,6 +65,7 @@ void tyni_door_open(tyni_door *door, const tyn_image *image, const tyn_depth_cod
     door->marked = coding->has_sky;
     door->sky = coding->sky;
     door->far_depth = camera->far_depth;
+    door->parallel = camera->kind == TYN_CAMERA_ORTHOGRAPHIC;
     door->plain = image->format == TYN_DEPTH_F32 && door->kind == TYN_CODING_VIEW && door->scale == 1.0f && !door->marked;
     if (door->kind == TYN_CODING_PROJECTED)
         open_projected(door, coding, camera);
