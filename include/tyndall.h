@@ -384,7 +384,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
      (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                    \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
-#define TYN_CONTEXT_BYTES 256
+#define TYN_CONTEXT_BYTES 1728
 #define TYN_STATS_BYTES 128
 #define TYN_ROW_BYTES 1088
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)

@@ -24,7 +24,7 @@
 #include "view.h"
 
 #define BAND 8   /* rows of pixels a job */
-#define CHUNK 32 /* pixels at a time: one word of rejected bits */
+#define CHUNK 16 /* pixels at a time, at most the bits of a word; their buffers are on the stack */
 
 /* One light on its way through the frame. */
 typedef struct pass {
@@ -34,7 +34,7 @@ typedef struct pass {
     tyni_door depth;
     tyni_medium medium;
     float fog[3]; /* extinction of surfaces */
-    tyni_lamp lamp;
+    const tyni_lamp *lamp;
     tyni_slices slices;
     tyni_field field;
     tyn_method method;
@@ -68,7 +68,7 @@ static int ray_range(const pass *p, const tyni_sight *v, float s, float *t0, flo
 {
     *t0 = 0.0f;
     *t1 = tyni_art_reach(p->frame, s);
-    return s > 0.0f && tyni_view_clip(&p->lamp, v, t0, t1);
+    return s > 0.0f && tyni_view_clip(p->lamp, v, t0, t1);
 }
 
 /* Visibility of one ray in the kept channels. */
@@ -84,19 +84,19 @@ static void ray_value(const pass *p, const tyni_row *row, const tyni_sight *v, f
         return;
     if (p->context->config.rays == TYN_RAYS_STEPS) {
         float all[3];
-        tyni_ray_steps(&p->lamp, medium, v, t0, t1, p->context->config.steps, all);
+        tyni_ray_steps(p->lamp, medium, v, t0, t1, p->context->config.steps, all);
         for (int32_t i = 0; i < p->count; i++)
             light[i] = all[p->channels[i]];
     } else {
-        tyni_integral_begin(&it, medium, &p->lamp, v, t0, t1, p->channels, p->count);
+        tyni_integral_begin(&it, medium, p->lamp, v, t0, t1, p->channels, p->count);
         if (!row || tyni_ray_coarse(row, &it, v)) {
-            tyni_ray_walk(&p->lamp, &it, v, light);
+            tyni_ray_walk(p->lamp, &it, v, light);
             stats->walks++;
         } else {
-            tyni_ray_row(row, at, &p->lamp, &it, v, light);
+            tyni_ray_row(row, at, p->lamp, &it, v, light);
         }
     }
-    tyni_integral_norm(medium, &p->lamp, v, t0, t1, norm);
+    tyni_integral_norm(medium, p->lamp, v, t0, t1, norm);
     for (int32_t i = 0; i < p->count; i++) {
         float n = norm[p->channels[i]];
         value[i] = n > 0.0f ? light[i] / n : 0.0f;
@@ -173,11 +173,11 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
     tyni_slice slice;
     scratch_of(p->context, worker, &s);
     memset(entries, 0, sizeof *entries * (size_t)p->field.pitch);
-    tyni_slice_line(&slice, &p->slices, &p->lamp, &p->view, index);
+    tyni_slice_line(&slice, &p->slices, p->lamp, &p->view, index);
     if (slice.first > slice.last)
         return;
     tyni_sample_depths(s.depth, &p->slices, &slice, &p->view, &p->depth);
-    if (tyni_view_bounded(&p->lamp) || p->frame->max_distance > 0.0f)
+    if (tyni_view_bounded(p->lamp) || p->frame->max_distance > 0.0f)
         clamp_to_volume(p, &slice, s.depth);
     s.stats->slices++;
     s.stats->samples += slice.last - slice.first + 1;
@@ -187,7 +187,7 @@ static void slice_job(void *argument, int32_t index, int32_t worker)
         tyni_debug_mark(entries, s.rays, s.breaks, slice.first, slice.last);
         return;
     }
-    tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, config->maps), &p->slices, &slice, &p->lamp,
+    tyni_row_build(s.row, s.threshold, s.split, tyni_row_room(config->shadow_size, config->maps), &p->slices, &slice, p->lamp,
                    &p->view, reach_of(p, &slice, s.depth));
     run_rays(p, &slice, s.rays, &s);
     while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2), slice.first, slice.last,
@@ -246,7 +246,7 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
             tyni_gather_grid(&p->field, px, py, t1 / (length * p->view.far_depth), value);
         }
         if (p->method == TYN_METHOD_MARCH || *rejected >> i & 1u) {
-            tyni_ray_pixel(&p->lamp, m, &v, t1, steps, light);
+            tyni_ray_pixel(p->lamp, m, &v, t1, steps, light);
             stats->rays += p->method == TYN_METHOD_MARCH;
             for (int32_t c = 0; c < 3; c++)
                 rgb[3 * i + c] += light[c];
@@ -259,12 +259,12 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
             light[m->high] = value[1];
             light[m->middle] = value[0] + (value[1] - value[0]) * m->blend;
         }
-        tyni_integral_norm(m, &p->lamp, &v, t0, t1, norm);
+        tyni_integral_norm(m, p->lamp, &v, t0, t1, norm);
         mix[0] = mix[1] = mix[2] = 1.0f;
-        if (p->lamp.kind == TYN_LIGHT_DIRECTIONAL)
-            tyni_medium_mix(m, tyni_clampf(tyni_vec_dot(v.d, p->lamp.to_light), -1.0f, 1.0f), mix);
+        if (p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
+            tyni_medium_mix(m, tyni_clampf(tyni_vec_dot(v.d, p->lamp->to_light), -1.0f, 1.0f), mix);
         for (int32_t c = 0; c < 3; c++)
-            rgb[3 * i + c] += light[c] * norm[c] * mix[c] * p->lamp.colour[c];
+            rgb[3 * i + c] += light[c] * norm[c] * mix[c] * p->lamp->colour[c];
     }
     for (uint32_t bits = *rejected; bits; bits &= bits - 1)
         stats->rejected++;
@@ -306,7 +306,7 @@ static void debug_chunk(const pass *p, int32_t x, int32_t y, int32_t count, cons
         float exposure = p->frame->display.exposure > 0.0f ? p->frame->display.exposure : 1.0f;
         for (int32_t c = 0; c < 3; c++)
             rgb[3 * i + c] *= 0.5f * exposure;
-        tyni_debug_pixel(p->frame->debug, &p->view, &p->lamp, &p->slices, &p->field, x + i, y, depth[i],
+        tyni_debug_pixel(p->frame->debug, &p->view, p->lamp, &p->slices, &p->field, x + i, y, depth[i],
                          (int)(rejected >> i & 1u), rgb + 3 * i);
     }
     tyni_composite_write(&p->frame->target, &plain, x, y, count, rgb);
@@ -367,11 +367,11 @@ static uint64_t now(const tyn_frame *frame)
 static void choose_channels(pass *p)
 {
     const tyni_medium *m = &p->medium;
-    p->count = p->lamp.coloured ? 3 : p->lamp.kind == TYN_LIGHT_DIRECTIONAL && m->sigma[m->low] == m->sigma[m->high] ? 1 : 2;
-    p->channels[0] = p->lamp.coloured ? 0 : m->low;
-    p->channels[1] = p->lamp.coloured ? 1 : m->high;
+    p->count = p->lamp->coloured ? 3 : p->lamp->kind == TYN_LIGHT_DIRECTIONAL && m->sigma[m->low] == m->sigma[m->high] ? 1 : 2;
+    p->channels[0] = p->lamp->coloured ? 0 : m->low;
+    p->channels[1] = p->lamp->coloured ? 1 : m->high;
     p->channels[2] = 2;
-    p->field.thirds = p->lamp.coloured ? p->context->thirds : NULL;
+    p->field.thirds = p->lamp->coloured ? p->context->thirds : NULL;
 }
 
 static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *light, tyn_stats *stats)
@@ -383,11 +383,11 @@ static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *
     if (!light || !p->medium.scatters || light->scale < 0.0f)
         p->method = TYN_METHOD_NONE;
     if (light) {
-        tyni_view_lamp(&p->lamp, light, &p->view);
-        tyni_art_lamp(&p->lamp, light, p->frame);
+        tyni_view_lamp(&c->lamp, light, &p->view);
+        tyni_art_lamp(&c->lamp, light, p->frame);
     }
     /* at the light's own position there is no epipole, and a ray stays inside one texel: a ray for each pixel costs nothing */
-    if (p->method == TYN_METHOD_EPIPOLAR && p->lamp.no_epipole)
+    if (p->method == TYN_METHOD_EPIPOLAR && p->lamp->no_epipole)
         p->method = TYN_METHOD_MARCH;
     p->field.entries = c->entries;
     p->field.scales = (const float(*)[3])c->scales;
@@ -396,7 +396,7 @@ static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *
     choose_channels(p);
     if (p->method == TYN_METHOD_EPIPOLAR) {
         int32_t stride = tyni_slice_stride(p->view.width, p->view.height, c->samples);
-        tyni_slice_layout(&p->slices, &p->lamp, p->view.width, p->view.height, c->config.slices, stride);
+        tyni_slice_layout(&p->slices, p->lamp, p->view.width, p->view.height, c->config.slices, stride);
         status = tyni_jobs_run(jobs, slice_job, p, p->slices.count);
     } else if (p->method == TYN_METHOD_SUBSAMPLE) {
         status = tyni_jobs_run(jobs, grid_job, p, grid_layout(p));
@@ -445,6 +445,8 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
         memset(s.stats, 0, sizeof *s.stats);
     }
     p.context = context;
+    memset(&context->lamp, 0, sizeof context->lamp);
+    p.lamp = &context->lamp;
     p.frame = frame;
     tyni_view_camera(&p.view, &frame->camera, frame->depth.width, frame->depth.height);
     tyni_door_open(&p.depth, &frame->depth, &frame->depth_coding, &frame->camera);

@@ -5,6 +5,7 @@
 #include "arena.h"
 #include "jobs.h"
 #include "row.h"
+#include "view.h"
 
 #include "base.h"
 
@@ -30,6 +31,7 @@ struct tyn_context {
     tyni_jobs_count *counts;
     uint8_t *scratch; /* workers * scratch_bytes */
     size_t scratch_bytes;
+    tyni_lamp lamp; /* of the light in hand: too large for a stack */
 };
 
 /* Fills in the defaults of a config. TYN_E_CONFIG. */
