@@ -1,8 +1,8 @@
 /* fuzz_scene.c - garbage for the readers of scenes, OBJ, MTL, PPM, PGM and PFM. Built by hand, from the top folder:
  *
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined -D_POSIX_C_SOURCE=200809L -Iinclude -Isrc -Iports/posix -o
- * build/fuzz_scene \ tests/fuzz_scene.c tests/files.c ports/posix/{error,file,text,scene,pnm,mtl,obj,parse,pfm}.c src/[a-z]*.c
- * -lm
+ * build/fuzz_scene \ tests/fuzz_scene.c tests/files.c
+ * ports/posix/{error,file,text,keys,directives,scene,pnm,mtl,obj,parse,pfm}.c src/[a-z]*.c -lm
  *
  * An input is the files one after the other, with a byte 1 between them. */
 #include <stdlib.h>

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef enum purpose { COLOUR, MASK, COUNTS } purpose; /* COUNTS: 16 bits as they stand in the file */
+
 typedef struct pnm {
     const char *file;
     const unsigned char *start, *at, *end;
@@ -88,17 +90,19 @@ static int fill(pnm *p, tyn_image *image, size_t count, int plain, uint32_t maxv
             bytes[i] = (uint8_t)v;
         else if (image->format == TYN_MASK8)
             bytes[i] = v * 2 < maxval ? 0 : 255;
+        else if (image->format == TYN_DEPTH_U16)
+            words[i] = (uint16_t)v;
         else
             words[i] = (uint16_t)((v * 65535u + maxval / 2) / maxval);
     }
     return 0;
 }
 
-static tyn_image *read_image(scene *s, pnm *p, int mask)
+static tyn_image *read_image(scene *s, pnm *p, purpose use, uint32_t *top)
 {
     uint32_t width = 0, height = 0, maxval = 0;
     size_t count, left;
-    int plain;
+    int plain, mask = use != COLOUR;
     tyn_image *image;
     const char *binary_magic = mask ? "P5" : "P6", *plain_magic = mask ? "P2" : "P3";
     if (p->end - p->at < 3 || (memcmp(p->at, binary_magic, 2) != 0 && memcmp(p->at, plain_magic, 2) != 0) ||
@@ -135,8 +139,10 @@ static tyn_image *read_image(scene *s, pnm *p, int mask)
         fail(p, p->start, 2, "the file is shorter than its header says");
         return NULL;
     }
+    *top = maxval;
     image = scene_add_image(s, (int32_t)width, (int32_t)height,
-                            mask            ? TYN_MASK8
+                            use == COUNTS   ? TYN_DEPTH_U16
+                            : use == MASK   ? TYN_MASK8
                             : maxval == 255 ? TYN_RGB8_LINEAR
                                             : TYN_RGB16_LINEAR);
     if (!image) {
@@ -146,7 +152,7 @@ static tyn_image *read_image(scene *s, pnm *p, int mask)
     return fill(p, image, count, plain, maxval) == 0 ? image : NULL;
 }
 
-static tyn_image *load(scene *s, const char *path, int mask, tool_error *error)
+static tyn_image *load(scene *s, const char *path, purpose use, uint32_t *top, tool_error *error)
 {
     char *data = NULL;
     size_t size = 0;
@@ -159,19 +165,29 @@ static tyn_image *load(scene *s, const char *path, int mask, tool_error *error)
     }
     p.start = p.at = (const unsigned char *)data;
     p.end = p.start + size;
-    image = read_image(s, &p, mask);
+    image = read_image(s, &p, use, top);
     free(data);
     return image;
 }
 
 tyn_image *pnm_load_colour(scene *s, const char *path, tool_error *error)
 {
-    return load(s, path, 0, error);
+    uint32_t top;
+    return load(s, path, COLOUR, &top, error);
 }
 
 tyn_image *pnm_load_mask(scene *s, const char *path, tool_error *error)
 {
-    return load(s, path, 1, error);
+    uint32_t top;
+    return load(s, path, MASK, &top, error);
+}
+
+tyn_image *pnm_load_counts(scene *s, const char *path, int32_t *maxval, tool_error *error)
+{
+    uint32_t top = 0;
+    tyn_image *image = load(s, path, COUNTS, &top, error);
+    *maxval = (int32_t)top;
+    return image;
 }
 
 tyn_image *texture_load(texture_cache *cache, scene *s, const char *path, int mask, tool_error *error)
@@ -198,7 +214,7 @@ tyn_image *texture_load(texture_cache *cache, scene *s, const char *path, int ma
         return NULL;
     }
     strcpy(e->path, path);
-    e->image = load(s, path, mask, error);
+    e->image = mask ? pnm_load_mask(s, path, error) : pnm_load_colour(s, path, error);
     if (!e->image) {
         free(e->path);
         return NULL;

@@ -1,4 +1,4 @@
-/* pnm.h - PPM (P3, P6) and PGM (P2, P5) as textures. */
+/* pnm.h - PPM (P3, P6) and PGM (P2, P5) as textures and as depth. */
 #ifndef TOOL_PNM_H
 #define TOOL_PNM_H
 
@@ -10,6 +10,9 @@ tyn_image *pnm_load_colour(scene *s, const char *path, tool_error *error);
 
 /* A mask: TYN_MASK8 with 0 where a value is below half of maxval, else 255. NULL: error set. */
 tyn_image *pnm_load_mask(scene *s, const char *path, tool_error *error);
+
+/* Depth: TYN_DEPTH_U16 with the values as they stand in the file, 0 .. maxval. NULL: error set. */
+tyn_image *pnm_load_counts(scene *s, const char *path, int32_t *maxval, tool_error *error);
 
 /* The textures of a scene by name, so that each file is read once. Zero bytes are an empty cache. */
 typedef struct texture_cache {

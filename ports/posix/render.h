@@ -20,12 +20,20 @@ typedef struct render_settings {
     float exposure;                                            /* 0: automatic for display, 1 for linear pictures */
     tyn_debug debug;                                           /* a second picture, drawn in debug_format */
     tyn_format debug_format;
-    int want_scatter, want_surface; /* keep these too; depth is always there */
+    int want_scatter, want_surface, want_maps; /* keep these too; depth is always there */
 } render_settings;
 
 typedef struct render_times {
     uint64_t shadow_ns, surface_ns, shafts_ns;
 } render_times;
+
+#define RENDER_FACES 6 /* of a point light's cube */
+
+typedef struct render_light {
+    tyn_shadow faces[RENDER_FACES]; /* count of them; their depth is `maps`, NULL without settings.want_maps */
+    float *maps[RENDER_FACES];
+    int32_t count;
+} render_light;
 
 typedef struct render_result {
     int32_t width, height;
@@ -38,12 +46,15 @@ typedef struct render_result {
     tyn_stats stats; /* of the shafts */
     render_times times;
     size_t raster_bytes, shadow_bytes; /* memory of the rasterizer, of all shadow maps */
+    tyn_camera camera;
+    render_light lights[TYN_MAX_LIGHTS];
 } render_result;
 
 /* All of it in float. -1: error set (`name` is the scene's for messages), nothing to free. */
 int render_scene(const scene *s, const char *name, const render_settings *settings, pool *threads, render_result *result,
                  tool_error *error);
 void render_free(render_result *result);
+void render_free_maps(render_result *result);
 
 /* The factor that shows a linear picture well under TYN_TONE_FILM. The same on every machine. */
 float render_exposure(const float *radiance, int32_t width, int32_t height);

@@ -205,8 +205,7 @@ int scene_add_box(scene *s, const float min[3], const float max[3], const float 
 
 tyn_image *scene_add_image(scene *s, int32_t width, int32_t height, tyn_format format)
 {
-    static const uint8_t sizes[] = {0, 12, 4, 4, 2, 4, 3, 6, 1};
-    size_t bytes = (unsigned)format < sizeof sizes ? sizes[format] : 0;
+    size_t bytes = (size_t)tyn_format_bytes(format);
     if (s->image_count == s->image_capacity) {
         size_t capacity = 0;
         void *more =
