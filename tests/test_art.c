@@ -239,6 +239,24 @@ static void test_lights(void)
     rig_free(other);
 }
 
+/* Slices see depth end where the medium does: what lies behind breaks nothing and is not rejected. */
+static void test_reach(void)
+{
+    TEST("art controls: an end of the medium costs nothing");
+    for (int n = 0; n < NAMES; n++) {
+        rig *r = rig_stock(names[n], W, H, 128);
+        tyn_config config = rig_config(r, TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS);
+        tyn_frame frame = rig_frame(r);
+        tyn_stats before;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        before = r->stats;
+        frame.max_distance = 3; /* before all but a corner of the court */
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        CHECK(r->stats.breaks <= before.breaks / 4 && r->stats.rejected <= before.rejected / 4 + 4);
+        rig_free(r);
+    }
+}
+
 /* ---- the door ------------------------------------------------------------------------------------------------------- */
 
 static void test_statuses(void)
@@ -277,5 +295,6 @@ void test_art(void)
     test_each();
     test_neutral();
     test_lights();
+    test_reach();
     test_statuses();
 }
