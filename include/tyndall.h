@@ -293,10 +293,10 @@ tyn_status tyn_shadow_fit_cascades(tyn_shadow *cascades, int32_t count, const ty
 
 struct tyn_mesh;
 
-/* The same, but as tight as a frame allows: around what the camera does see, by its depth buffer (TYN_DEPTH_F32, any size;
- * NULL: as far as it can see), and what those triangles can shadow that lie between it and the light (a floor under everything
- * costs no texels). Error in the shafts is in proportion to the map's width: do this where the frame allows. Changes with the
- * view: shadows crawl by parts of a texel when the camera moves. TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_IMAGE,
+/* tyn_shadow_fit, but as tight as a frame allows: around what the camera does see, by its depth buffer (TYN_DEPTH_F32, any
+ * size; NULL: as far as it can see), and what those triangles can shadow that lie between it and the light (a floor under
+ * everything costs no texels). Error in the shafts is in proportion to the map's width: do this where the frame allows. Changes
+ * with the view: shadows crawl by parts of a texel when the camera moves. TYN_E_NULL, TYN_E_CAMERA, TYN_E_LIGHT, TYN_E_IMAGE,
  * TYN_E_ALIGN, TYN_E_LIMIT, TYN_E_MESH. */
 tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, const tyn_image *depth,
                                 const struct tyn_mesh *meshes, int32_t mesh_count);
