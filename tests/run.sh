@@ -11,7 +11,7 @@ export B CC CFLAGS MAKE
     echo $? >"$B/accuracy.status"
 } &
 part "$B/tests" -accuracy
-for script in tests/proofs*.sh tests/tool*.sh; do
+for script in tests/proofs*.sh tests/tool*.sh tests/post*.sh; do
     [ -f "$script" ] && part sh "$script"
 done
 wait

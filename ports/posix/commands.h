@@ -4,6 +4,7 @@
 #define TOOL_COMMANDS_H
 
 int command_render(int argc, char **argv);
+int command_post(int argc, char **argv);
 int command_compare(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_showcase(int argc, char **argv);

@@ -11,6 +11,7 @@
 static const char help[] = "usage: tyndall COMMAND ...\n"
                            "\n"
                            "  render SCENE -o OUT [options]   render a scene file; see tyndall render --help\n"
+                           "  post FRAME -o OUT [options]     add shafts to somebody else's frame; see tyndall post --help\n"
                            "  compare A.pfm B.pfm             relative L1, RMSE, PSNR, largest error of A; B is the truth\n"
                            "  showcase [FOLDER [NAME ...]]    render the built-in scenes as PNGs\n"
                            "  info                            version, instruction sets, memory of each preset\n"
@@ -35,13 +36,15 @@ static int run(int argc, char **argv)
     }
     if (strcmp(command, "render") == 0)
         return command_render(argc - 2, argv + 2);
+    if (strcmp(command, "post") == 0)
+        return command_post(argc - 2, argv + 2);
     if (strcmp(command, "compare") == 0)
         return command_compare(argc - 2, argv + 2);
     if (strcmp(command, "info") == 0)
         return command_info(argc - 2, argv + 2);
     if (strcmp(command, "showcase") == 0)
         return command_showcase(argc - 2, argv + 2);
-    if (strcmp(command, "post") == 0 || strcmp(command, "bench") == 0)
+    if (strcmp(command, "bench") == 0)
         fprintf(stderr, "tyndall: %s: is not in this version\n", command);
     else
         fprintf(stderr, "tyndall: '%s': unknown command; see tyndall --help\n", command);

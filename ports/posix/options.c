@@ -1,5 +1,6 @@
 /* options.c */
 #include "options.h"
+#include "foreign_write.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -113,6 +114,11 @@ static int take(options *o, const char *name, const char *value)
         *(name[2] == 'd' ? &o->depth : name[3] == 'c' ? &o->scatter : &o->surface) = value;
         return output_kind_of(value) == OUTPUT_PFM ? 0 : bad(name, value, "must end in .pfm");
     }
+    if (strcmp(name, "--frame") == 0) {
+        const char *fault = foreign_prefix_fault(value);
+        o->frame = value;
+        return fault ? bad(name, value, fault) : 0;
+    }
     if (strcmp(name, "--size") == 0)
         return size_option(value, r);
     if (strcmp(name, "--method") == 0) {
@@ -168,12 +174,15 @@ static int is_in(const char *name, const char *const *list)
     return 0;
 }
 
+/* What only `render` can do: a frame has its size and its surfaces already. */
+static const char *const of_scenes[] = {"--size", "--surface", "--depth", "--frame", NULL};
+
 static int takes_value(const char *name)
 {
     static const char *const valued[] = {
-        "-o",       "--scatter", "--surface",      "--depth", "--size",        "--method", "--rays",    "--steps",
-        "--slices", "--samples", "--initial-step", "--break", "--shadow-size", "--preset", "--threads", "--exposure",
-        "--debug",  NULL};
+        "-o",        "--scatter",  "--surface", "--depth",        "--size",  "--method",      "--rays",
+        "--steps",   "--slices",   "--samples", "--initial-step", "--break", "--shadow-size", "--preset",
+        "--threads", "--exposure", "--debug",   "--frame",        NULL};
     return is_in(name, valued);
 }
 
@@ -185,19 +194,23 @@ static int check_names(const options *o)
         for (int k = 0; k < i; k++)
             if (names[i] && names[k] && strcmp(names[i], names[k]) == 0)
                 return bad("-o, --scatter, --surface, --depth", names[i], "is given twice");
+    for (int i = 0; i < 4 && o->frame; i++)
+        if (names[i] && foreign_prefix_takes(o->frame, names[i]))
+            return bad("--frame", names[i], "is one of its own files");
     return 0;
 }
 
-int options_parse(options *o, int argc, char **argv)
+int options_parse(options *o, options_command command, int argc, char **argv)
 {
+    const char *name = command == OPTIONS_POST ? "post" : "render";
     int plain = 0; /* after "--" */
     memset(o, 0, sizeof *o);
     for (int i = 0; i < argc; i++) {
         const char *a = argv[i];
         if (plain || a[0] != '-' || a[1] == '\0') {
-            if (o->scene)
-                return bad("render", a, "more than one scene");
-            o->scene = a;
+            if (o->input)
+                return bad(name, a, command == OPTIONS_POST ? "more than one frame" : "more than one scene");
+            o->input = a;
         } else if (strcmp(a, "--") == 0) {
             plain = 1;
         } else if (strcmp(a, "--help") == 0) {
@@ -205,32 +218,74 @@ int options_parse(options *o, int argc, char **argv)
             return 0;
         } else if (strcmp(a, "--stats") == 0) {
             o->stats = 1;
+        } else if (command == OPTIONS_POST && is_in(a, of_scenes)) {
+            return bad(a, NULL, "is for tyndall render");
         } else if (takes_value(a)) {
             if (i + 1 == argc)
                 return bad(a, NULL, "a value is missing after it");
             if (take(o, a, argv[++i]) != 0)
                 return -1;
         } else {
-            return bad(a, NULL, is_in(a, later) ? "is not in this version" : "unknown option; see tyndall render --help");
+            return bad(a, NULL, is_in(a, later) ? "is not in this version" : "unknown option; see --help after the command");
         }
     }
-    if (!o->scene)
-        return bad("render", NULL, "no scene given; see tyndall render --help");
+    if (!o->input)
+        return bad(name, NULL,
+                   command == OPTIONS_POST ? "no frame given; see tyndall post --help"
+                                           : "no scene given; see tyndall render --help");
     if (!o->out)
         return bad("-o", NULL, "is required: where the picture goes");
+    o->settings.want_scatter = o->scatter != NULL;
+    o->settings.debug_format = o->kind == OUTPUT_PFM      ? TYN_RGB_F32
+                               : o->kind == OUTPUT_RGB565 ? TYN_RGB565_SRGB
+                                                          : TYN_RGBA8_SRGB;
     return check_names(o);
 }
 
-void options_help(void)
+static void help_of_render(void)
 {
     printf("usage: tyndall render SCENE -o OUT [options]\n"
            "\n"
-           "  -o FILE            .png, .ppm (display, 8 bit), .pfm (linear radiance), .rgb565, .rgba (raw, no header;\n"
-           "                     16 bit values low byte first)\n"
-           "  --scatter F.pfm    also the scattered light alone\n"
            "  --surface F.pfm    also the surfaces, not attenuated\n"
            "  --depth F.pfm      also the view-space depth\n"
+           "  --frame PREFIX     also PREFIX.frame and what it names: all that tyndall post needs for the same picture\n"
            "  --size WxH         instead of the scene's\n"
+           "  --shadow-size N    shadow map, texels, 1 .. 16384\n");
+}
+
+static void help_of_post(void)
+{
+    printf("usage: tyndall post FRAME -o OUT [options]\n"
+           "\n"
+           "Adds shafts to a frame that something else has drawn. FRAME is a text file, one directive a line, # a comment;\n"
+           "file names are relative to it. Formats, matrices and the rest of the keys: ports/posix/README.md.\n"
+           "\n"
+           "  tyndall-frame 1\n"
+           "  image W H\n"
+           "  depth F            PFM or PGM; [coding view|projected|distance] [scale s] [at near far] [planes n f]\n"
+           "                     [sky v] [unknown v | zero-unknown]\n"
+           "  colour F           PFM (linear) or PPM (sRGB; [linear]); without: black\n"
+           "  camera ...         as in a scene; or position right up forward window|pinhole near far [orthographic];\n"
+           "                     or view (16) projection (16) near far; matrices row-major, for column vectors\n"
+           "  medium ...         as in a scene\n"
+           "  light ...          as in a scene; also [scale s] [tint r g b] [outside lit|dark], spot: [direction x y z]\n"
+           "  shadow F           of the light before, up to 8: matrix (16) [coding reversed|projected|linear] [at n f]\n"
+           "                     [scale s] [bias texels] [tint F.ppm]\n"
+           "  shadow depth       made from the frame's own depth: [size n] [jump r] [thickness m]\n"
+           "  art                [shaft_contrast x] [fog_scale x] [max_distance m]\n"
+           "\n"
+           "  --shadow-size N    of maps made from depth, texels, 1 .. 16384\n");
+}
+
+void options_help(options_command command)
+{
+    if (command == OPTIONS_POST)
+        help_of_post();
+    else
+        help_of_render();
+    printf("  -o FILE            .png, .ppm (display, 8 bit), .pfm (linear radiance), .rgb565, .rgba (raw, no header;\n"
+           "                     16 bit values low byte first)\n"
+           "  --scatter F.pfm    also the scattered light alone\n"
            "  --preset P         handheld, balanced, quality (default), reference\n"
            "  --method M         epipolar (default), march (every pixel), subsample, none\n"
            "  --rays R           words (default, exact on the row), steps (fixed steps, see --steps)\n"
@@ -239,7 +294,6 @@ void options_help(void)
            "  --samples N        along a slice, 2 .. 65536\n"
            "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
            "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
-           "  --shadow-size N    shadow map, texels, 1 .. 16384\n"
            "  --threads N        1 .. 64; default: the machine's\n"
            "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
            "  --debug V          draw lines, samples, breaks, scatter, rejected or outside instead of the picture\n"

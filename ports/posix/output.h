@@ -12,7 +12,7 @@ typedef enum output_kind { OUTPUT_UNKNOWN, OUTPUT_PNG, OUTPUT_PPM, OUTPUT_PFM, O
 /* By the ending of the name, in any case. */
 output_kind output_kind_of(const char *path);
 
-#define OUTPUT_MAX 8
+#define OUTPUT_MAX 128 /* render --frame: four pictures, the frame, and of 16 lights a texture and six maps each */
 
 typedef struct output_set {
     struct output {
