@@ -133,7 +133,6 @@ static float reach_of(const pass *p, const tyni_slice *slice, const float *depth
 static void store_line(const pass *p, int32_t index, int32_t first, int32_t last, const tyni_scratch *s)
 {
     uint32_t *entries = p->context->entries + (ptrdiff_t)index * p->field.pitch;
-    uint16_t *thirds = p->context->thirds + (ptrdiff_t)index * p->field.pitch;
     float *scale = p->context->scales[index], inverse[3], far_inverse = 1.0f / p->view.far_depth;
     int32_t count = tyni_maxi(p->count, 2);
     for (int32_t n = 0; n < count; n++) {
@@ -146,7 +145,7 @@ static void store_line(const pass *p, int32_t index, int32_t first, int32_t last
         if (s->depth[j] > 0.0f)
             entries[j] = tyni_entry_pack(s->value[0][j], s->value[1][j], inverse, s->depth[j] * far_inverse);
     for (int32_t j = first; j <= last && count == 3; j++)
-        thirds[j] = tyni_entry_third(s->value[2][j], inverse[2]);
+        p->context->thirds[(ptrdiff_t)index * p->field.pitch + j] = tyni_entry_third(s->value[2][j], inverse[2]);
 }
 
 /* The rays of the set bits. */

@@ -304,7 +304,7 @@ static int collect(void *context, const unsigned char *from, size_t count)
 static void test_deflate(void)
 {
     enum { MOST = 150000 };
-    uint8_t *from = malloc(MOST), *back = malloc(MOST);
+    uint8_t *from = calloc(MOST, 1), *back = malloc(MOST);
     bytes packed = {malloc(2 * MOST), 0, 2 * MOST, -1};
     TEST("deflate is undone by a plain inflate");
     for (int round = 0; round < 40; round++) {
