@@ -398,7 +398,7 @@ static void test_splits(void)
                 seen_point(&camera, test_random_float(0, (float)(split * 0.9999)), p);
                 map_point(map[i].matrix, p, at);
                 CHECK(at[0] >= 0 && at[0] <= 1 && at[1] >= 0 && at[1] <= 1 && at[2] > 0 && at[2] < 1);
-                seen_point(&camera, (float)(split * 1.5), p);
+                seen_point(&camera, (float)(split * 10), p);
                 map_point(map[i].matrix, p, at);
                 beyond += at[0] < 0 || at[0] > 1 || at[1] < 0 || at[1] > 1 || at[2] < 0 || at[2] > 1;
             }

@@ -171,7 +171,8 @@ static void test_truth(void)
                 sum += out[c];
             }
         }
-        CHECK_NEAR(gap / sum, 0, shadows ? 0.02 : 3e-5);
+        /* a random ray may pass a bulb so closely that the table of its light shows */
+        CHECK_NEAR(gap / sum, 0, shadows ? 0.02 : n ? 3e-4 : 3e-5);
         rig_free(r);
         model_free(scene);
     }
