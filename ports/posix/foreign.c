@@ -304,6 +304,8 @@ static int read_map(reader *r, foreign_light *l, token name)
         return -1;
     if (keys[1].seen && (coding = keys_word(&r->p.t, &keys[1], codings)) < 0)
         return -1;
+    if (!matrix_is_invertible(map->matrix))
+        return text_fail(&r->p.t, keys[0].at, "is not invertible");
     if (map->bias > 64.0f)
         return text_fail(&r->p.t, keys[4].at, "must be from 0 to 64");
     if (load_image(r, name, DEPTH, &image, &maxval) != 0 || (coding != TYN_MAP_LINEAR && check_maxval(r, name, maxval) != 0))

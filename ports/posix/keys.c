@@ -134,3 +134,34 @@ int keys_word(text *t, const key *k, const char *const *words)
     }
     return text_fail(t, k->word, "is not one of %s", list);
 }
+
+/* By elimination; what is left of a singular matrix after rounding does not count as a pivot. */
+int matrix_is_invertible(const float m[16])
+{
+    double a[4][4];
+    for (int r = 0; r < 4; r++) {
+        double most = 0.0;
+        for (int c = 0; c < 4; c++)
+            most = fabs((double)m[4 * r + c]) > most ? fabs((double)m[4 * r + c]) : most;
+        for (int c = 0; c < 4; c++)
+            a[r][c] = most > 0.0 ? (double)m[4 * r + c] / most : 0.0;
+    }
+    for (int k = 0; k < 4; k++) {
+        int best = k;
+        for (int r = k + 1; r < 4; r++)
+            best = fabs(a[r][k]) > fabs(a[best][k]) ? r : best;
+        if (!(fabs(a[best][k]) > 1e-14))
+            return 0;
+        for (int c = 0; c < 4; c++) {
+            double swapped = a[k][c];
+            a[k][c] = a[best][c];
+            a[best][c] = swapped;
+        }
+        for (int r = k + 1; r < 4; r++) {
+            double factor = a[r][k] / a[k][k];
+            for (int c = k; c < 4; c++)
+                a[r][c] -= factor * a[k][c];
+        }
+    }
+    return 1;
+}

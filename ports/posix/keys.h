@@ -39,6 +39,7 @@ int keys_word(text *t, const key *k, const char *const *words);
 double vector_length(const double v[3]);
 void vector_difference(const float a[3], const float b[3], double out[3]);
 int vector_is_zero(const float v[3]);
+int matrix_is_invertible(const float m[16]);
 int vector_parallel(const double a[3], const float b[3]);
 
 #endif
