@@ -236,11 +236,20 @@ expect 'post --help' 0 "$tyndall" post --help
 empty 'post --help knows the directives' "$(grep -q 'shadow depth' out.txt || cat out.txt)"
 
 # Bad input: status 1, file, line and token, no file. A line of a good frame is replaced, or one is added.
-# bad TEXT SED: the message holds TEXT.
-bad() {
-    sed "$2" flat.frame >bad.frame
+# blame TEXT NAME: bad.frame fails, and the message holds TEXT.
+blame() {
     expect "bad: $2" 1 "$tyndall" post bad.frame -o o/a.png --scatter o/s.pfm
     if grep -F -q -- "$1" err.txt; then pass; else fail "the message of $2" - <err.txt; fi
+}
+# bad TEXT SED
+bad() {
+    sed "$2" flat.frame >bad.frame
+    blame "$1" "$2"
+}
+# more TEXT LINES: after the last one.
+more() {
+    { cat flat.frame; printf '%b\n' "$2"; } >bad.frame
+    blame "$1" "$2"
 }
 printf 'P5\n8 8\n255\n' >eight.pgm
 i=0
@@ -250,9 +259,9 @@ bad "bad.frame:1: '2'" 's/frame 1/frame 2/'
 bad "'image': missing" '/^image/d'
 bad "'depth': missing" '/^depth/d'
 bad "'camera': missing" '/^camera/d'
-bad "bad.frame:7: 'quad': unknown directive" '$a quad a 0 0 0'
-bad "bad.frame:7: 'tyndall-frame': given twice" '$a tyndall-frame 1'
-bad "bad.frame:7: 'depth': given twice" '$a depth flat.pfm'
+more "bad.frame:7: 'quad': unknown directive" 'quad a 0 0 0'
+more "bad.frame:7: 'tyndall-frame': given twice" 'tyndall-frame 1'
+more "bad.frame:7: 'depth': given twice" 'depth flat.pfm'
 bad "bad.frame:2: 'image'" 's/^image 8 8/image 8/'
 bad "'flat.pfm': is 8 x 8 pixels" 's/^image 8 8/image 8 9/'
 bad "none.pfm" 's/flat.pfm/none.pfm/'
@@ -276,12 +285,12 @@ bad "'far'" 's/far 20/far 0.1/'
 bad "'target' or 'direction'" 's/light point/light spot angle 40/'
 bad "'maybe'" 's/intensity 5 5 5/& outside maybe/'
 bad "'shadow': comes before" 's/^light.*/shadow flat.pfm/'
-bad "missing key 'matrix'" '$a shadow flat.pfm'
-bad "'size'" '$a shadow depth size 1.5'
-bad "'shadow': this light" '$a shadow depth\nshadow depth'
-bad "'bias'" '$a shadow flat.pfm matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 bias 65'
-bad "'matrix': is not invertible" '$a shadow flat.pfm matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 0'
-bad "'-1'" '$a art fog_scale -1'
+more "missing key 'matrix'" 'shadow flat.pfm'
+more "'size'" 'shadow depth size 1.5'
+more "'shadow': this light" 'shadow depth\nshadow depth'
+more "'bias'" 'shadow flat.pfm matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 bias 65'
+more "'matrix': is not invertible" 'shadow flat.pfm matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 0'
+more "'-1'" 'art fog_scale -1'
 empty 'bad input writes nothing' "$(ls -A o)"
 
 # Frames of depth cameras.
