@@ -51,7 +51,7 @@ typedef enum tyn_status {
     TYN_E_MEDIUM = -8,   /* medium: not finite, coefficient < 0, or g outside -1 .. 1; or a frame's art control out of range */
     TYN_E_MESH = -9,     /* mesh: index out of range, or a material out of range */
     TYN_E_DISPLAY = -10, /* display: not finite, exposure < 0, or an unknown tone curve */
-    TYN_E_LIMIT = -11,   /* more lights, or a larger image or shadow map, than the config has room for */
+    TYN_E_LIMIT = -11,   /* more lights, maps or media, or a larger image or shadow map, than the config has room for */
     TYN_E_EXECUTOR = -12 /* the executor did not run each job once, or used a worker number out of range; output undefined */
 } tyn_status;
 
@@ -109,6 +109,11 @@ typedef struct tyn_image {
 
 /* Bytes of one pixel; 0 for a format that is none. */
 int32_t tyn_format_bytes(tyn_format format);
+
+/* Places, lengths, depths and coefficients are refused beyond this (and a near depth below its inverse), colours of lights
+ * beyond TYN_MAX_COLOUR: what is inside has room to be squared and cubed in floats. */
+#define TYN_MAX_LENGTH 1e12f
+#define TYN_MAX_COLOUR 1e24f
 
 /* ---- camera -------------------------------------------------------------------------------------------------------- */
 

@@ -104,11 +104,11 @@ static float unproject(const tyni_door *door, float value)
 float tyni_door_depth(const tyni_door *door, int32_t x, int32_t y)
 {
     float value = stored(door, x, y);
+    if (door->marked && value == door->sky)
+        return door->far_depth;
     /* a float that is no number becomes one here, and never meets another */
     if (!tyni_finite(value))
         return value < 0.0f && door->kind != TYN_CODING_PROJECTED ? 0.0f : door->far_depth;
-    if (door->marked && value == door->sky)
-        return door->far_depth;
     if (door->kind == TYN_CODING_PROJECTED)
         value = unproject(door, value);
     else if (door->kind == TYN_CODING_DISTANCE)

@@ -11,7 +11,8 @@
 
 #include "base.h"
 
-#define TYNI_ENTRY_FLOOR 0x38000000u /* bits of 2^-15 */
+#define TYNI_ENTRY_FLOOR 0x38000000u     /* bits of 2^-15 */
+#define TYNI_ENTRY_NEAREST 3.0577183e-5f /* what the first code stands for */
 
 /* inverse = 1 / scale of the line, or 0 for a dark one. depth is relative to far, 0 .. 1. */
 static inline uint32_t tyni_entry_pack(float low, float high, const float inverse[2], float depth)

@@ -339,7 +339,7 @@ static float farthest(const tyn_light *light, const tyn_camera *camera, const ty
     tyni_vec3 from = tyni_vec_load(light->position);
     float reach = 0.0f;
     for (int32_t i = 0; i < c->mesh_count; i++)
-        for (uint32_t k = 0; k < c->meshes[i].vertices; k++) {
+        for (uint32_t k = 0; k < c->meshes[i].vertices && c->meshes[i].triangles; k++) {
             tyni_vec3 p = tyni_vec_sub(tyni_vec_load(c->meshes[i].positions + 3 * (size_t)k), from);
             if (tyni_vec_finite(p))
                 reach = tyni_maxf(reach, tyni_vec_length(p));

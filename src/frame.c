@@ -225,6 +225,15 @@ static void grid_job(void *argument, int32_t index, int32_t worker)
 
 /* ---- pixels -------------------------------------------------------------------------------------------------------- */
 
+/* Visibility of the third channel. It falls about exponentially with extinction where the near air is in shadow. */
+static float between(float a, float b, float blend)
+{
+    float least = tyni_minf(a, b);
+    if (least <= 0.0f || tyni_absf(a - b) <= 0.1f * least)
+        return a + (b - a) * blend;
+    return a * tyni_num_exp(blend * tyni_num_log(b / a));
+}
+
 /* Adds a light to `count` pixels from (x, y) on. */
 static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const float *depth, tyn_stats *stats, float *rgb,
                       uint32_t *rejected)
@@ -256,7 +265,7 @@ static void add_light(const pass *p, int32_t x, int32_t y, int32_t count, const 
         } else {
             light[m->low] = value[0];
             light[m->high] = value[1];
-            light[m->middle] = value[0] + (value[1] - value[0]) * m->blend;
+            light[m->middle] = between(value[0], value[1], m->blend);
         }
         tyni_integral_norm(m, p->lamp, &v, t0, t1, norm);
         mix[0] = mix[1] = mix[2] = 1.0f;
@@ -288,7 +297,7 @@ static void finish(const pass *p, int32_t x, int32_t y, int32_t count, const flo
     }
     if (frame->transmittance.pixels)
         tyni_composite_write(&frame->transmittance, &plain, x, y, count, share);
-    if (!frame->target.pixels)
+    if (!frame->target.pixels || frame->debug)
         return;
     tyni_composite_read(&frame->colour, x, y, count, rgb);
     for (int32_t i = 0; i < 3 * count; i++)
@@ -334,7 +343,7 @@ static void band_job(void *argument, int32_t index, int32_t worker)
                 memcpy(sum + 3 * (ptrdiff_t)x, light, sizeof *light * 3u * (size_t)count);
             else
                 finish(p, x, y, count, depth, light);
-            if (p->frame->debug && p->first && p->frame->target.pixels)
+            if (p->frame->debug && p->frame->target.pixels)
                 debug_chunk(p, x, y, count, depth, rejected);
         }
     }
@@ -362,15 +371,20 @@ static uint64_t now(const tyn_frame *frame)
     return frame->clock ? frame->clock(frame->clock_context) : 0;
 }
 
-/* White light: the channels of least and largest extinction, or one if they are equal. Coloured: all. */
+/* White light: the channels of least and largest extinction, or one if they are equal; the third lies between them, well enough
+ * unless the air is thick and coloured. Coloured light, and such air where there is room: all. */
 static void choose_channels(pass *p)
 {
     const tyni_medium *m = &p->medium;
-    p->count = p->lamp->coloured ? 3 : p->lamp->kind == TYN_LIGHT_DIRECTIONAL && m->sigma[m->low] == m->sigma[m->high] ? 1 : 2;
-    p->channels[0] = p->lamp->coloured ? 0 : m->low;
-    p->channels[1] = p->lamp->coloured ? 1 : m->high;
+    float apart = (m->sigma[m->high] - m->sigma[m->low]) * p->view.far_depth;
+    int all = p->lamp->coloured || (p->context->thirds && apart > 0.5f);
+    p->count = all ? 3 : 2;
+    if (!all && apart == 0.0f && p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
+        p->count = 1;
+    p->channels[0] = all ? 0 : m->low;
+    p->channels[1] = all ? 1 : m->high;
     p->channels[2] = 2;
-    p->field.thirds = p->lamp->coloured ? p->context->thirds : NULL;
+    p->field.thirds = all ? p->context->thirds : NULL;
 }
 
 static tyn_status render_light(pass *p, const tyni_jobs *jobs, const tyn_light *light, tyn_stats *stats)
@@ -432,7 +446,8 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
     tyn_stats stats;
     tyn_status status = TYN_OK;
     pass p;
-    int32_t lights = tyni_maxi(frame->light_count, 1);
+    /* a debug view shows one light: the first */
+    int32_t lights = frame->debug ? 1 : tyni_maxi(frame->light_count, 1);
     memset(&p, 0, sizeof p);
     memset(&stats, 0, sizeof stats);
     jobs.executor = frame->executor;

@@ -14,7 +14,10 @@ typedef struct sum {
 /* 1 within the threshold, then falling with the fourth power (IVB section 6.6). */
 static float depth_weight(float depth, uint32_t entry, float threshold)
 {
-    float other = tyni_entry_depth(entry), off = tyni_absf(depth - other), limit = threshold * tyni_minf(depth, other), r;
+    float other = tyni_entry_depth(entry), off, limit, r;
+    depth = tyni_maxf(depth, TYNI_ENTRY_NEAREST); /* nearer ones are not told apart */
+    off = tyni_absf(depth - other);
+    limit = threshold * tyni_minf(depth, other);
     if (off <= limit)
         return 1.0f;
     r = limit / off;
@@ -49,7 +52,7 @@ static int settle(const sum *s, float least, float value[3])
 int tyni_gather_slices(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
 {
     sum s = {0.0f, 0.0f, 0.0f, 0.0f};
-    float k, at, f;
+    float k, f;
     const tyni_sector *sector = tyni_slice_find(slices, x, y, &k);
     int32_t line, sample, p, r;
     if (!sector->count)
@@ -57,9 +60,8 @@ int tyni_gather_slices(const tyni_field *field, const tyni_slices *slices, float
     p = (int32_t)(sector->along_y ? y : x);
     sample = p / slices->stride;
     r = p - sample * slices->stride;
-    at = tyni_minf(k, (float)(sector->count - 1) - 0.001f);
-    line = (int32_t)at;
-    f = at - (float)line;
+    line = tyni_mini((int32_t)k, sector->count - 2);
+    f = k - (float)line;
     line += sector->start;
     if (!r) {
         tap(&s, field, line, sample, depth, 1.0f - f);

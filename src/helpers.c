@@ -5,6 +5,7 @@
 #include "check.h"
 #include "fit.h"
 #include "num.h"
+#include "slide.h"
 #include "vec.h"
 
 static void store(float out[3], tyni_vec3 v)
@@ -154,6 +155,7 @@ tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibi
 
 static tyn_status check_fit(const tyn_light *light, const tyn_camera *camera)
 {
+    tyn_status status;
     tyn_light bare;
     if (!light || !camera)
         return TYN_E_NULL;
@@ -163,7 +165,8 @@ static tyn_status check_fit(const tyn_light *light, const tyn_camera *camera)
     if (light->kind == TYN_LIGHT_POINT)
         return TYN_E_LIGHT;   /* tyn_shadow_fit_cube */
     bare.shadow.depth = NULL; /* its matrix is what is asked for, whatever it holds now */
-    return tyni_check_lights(&bare, 1, TYN_MAX_SHADOW, TYN_MAX_MAPS);
+    status = tyni_check_lights(&bare, 1, TYN_MAX_SHADOW, TYN_MAX_MAPS);
+    return status == TYN_OK ? tyni_slide_check(&bare) : status;
 }
 
 static void fit(tyn_light *light, const tyn_camera *camera, const tyn_image *depth, const tyni_fit_casters *casters)

@@ -49,6 +49,8 @@ void tyni_medium_prepare(tyni_medium *m, const tyn_medium *media, int32_t count)
         }
         if (p->phase == TYN_PHASE_HG) {
             m->hg[m->hg_count++].g = p->g;
+            if (tyni_absf(p->g) > m->peak)
+                m->backward = p->g < 0.0f;
             m->peak = tyni_maxf(m->peak, tyni_absf(p->g));
         }
     }
@@ -127,26 +129,63 @@ static int32_t intervals(const tyni_medium *medium, const tyni_path *p)
         TYNI_MEDIUM_KNOTS - 1);
 }
 
+static float power_of(float x, int32_t power)
+{
+    return power == 1 ? x : power == 2 ? x * x : x * x * x * x;
+}
+
+/* psi of a knot coordinate s, and d psi / ds. */
+static float warp(const tyni_integral *it, float s, float *slope)
+{
+    float e = it->reversed ? 1.0f - s : s, span = it->path.span;
+    *slope = span * (float)it->power * power_of(e, it->power) / tyni_maxf(e, 1e-9f);
+    if (it->power == 1)
+        *slope = span;
+    return it->reversed ? span * (1.0f - power_of(e, it->power)) : span * power_of(e, it->power);
+}
+
+static float unwarp(const tyni_integral *it, float psi)
+{
+    float r = it->path.span > 0.0f ? tyni_clampf(psi / it->path.span, 0.0f, 1.0f) : 0.0f, e = it->reversed ? 1.0f - r : r;
+    if (it->power > 1)
+        e = sqrtf(e);
+    if (it->power > 2)
+        e = sqrtf(e);
+    return it->reversed ? 1.0f - e : e;
+}
+
+/* The integrand per ds. */
+static void knot_value(const tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float s,
+                       float value[3])
+{
+    float slope, psi = warp(it, s, &slope);
+    path_value(&it->path, medium, lamp, v, psi, value);
+    for (int32_t c = 0; c < 3; c++)
+        value[c] *= slope;
+}
+
 static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v)
 {
-    float last[3], half[3], next[3];
+    float last[3], half[3], next[3], step;
     int32_t n;
     path_begin(&it->path, lamp, v, it->t0, it->t1);
     n = intervals(medium, &it->path);
-    it->step = it->path.span / (float)n;
+    it->power = medium->peak < 0.8f ? 1 : medium->peak < 0.93f ? 2 : 4;
+    it->reversed = medium->backward;
+    step = 1.0f / (float)n;
     it->knots = n + 1;
-    path_value(&it->path, medium, lamp, v, 0.0f, last);
+    knot_value(it, medium, lamp, v, 0.0f, last);
     for (int32_t i = 0; i < it->count; i++) {
         it->sum[i][0] = 0.0f;
-        it->value[i][0] = last[it->channels[i]] * it->step;
+        it->value[i][0] = last[it->channels[i]] * step;
     }
     for (int32_t k = 1; k <= n; k++) {
-        path_value(&it->path, medium, lamp, v, ((float)k - 0.5f) * it->step, half);
-        path_value(&it->path, medium, lamp, v, (float)k * it->step, next);
+        knot_value(it, medium, lamp, v, ((float)k - 0.5f) * step, half);
+        knot_value(it, medium, lamp, v, (float)k * step, next);
         for (int32_t i = 0; i < it->count; i++) {
             int32_t c = it->channels[i];
-            it->sum[i][k] = it->sum[i][k - 1] + it->step * (1.0f / 6.0f) * (last[c] + 4.0f * half[c] + next[c]);
-            it->value[i][k] = next[c] * it->step;
+            it->sum[i][k] = it->sum[i][k - 1] + step * (1.0f / 6.0f) * (last[c] + 4.0f * half[c] + next[c]);
+            it->value[i][k] = next[c] * step;
         }
         memcpy(last, next, sizeof last);
     }
@@ -194,7 +233,7 @@ float tyni_integral_t(const tyni_integral *it, float variable)
 void tyni_integral_at_variable(const tyni_integral *it, float x, float *out)
 {
     if (it->local) {
-        hermite(it, it->step > 0.0f ? tyni_clampf(x / it->step, 0.0f, (float)(it->knots - 1)) : 0.0f, out);
+        hermite(it, unwarp(it, x) * (float)(it->knots - 1), out);
         return;
     }
     for (int32_t i = 0; i < it->count; i++) {

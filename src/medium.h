@@ -20,6 +20,7 @@ typedef struct tyni_medium {
         float g;
     } hg[TYN_MAX_MEDIA];
     float peak;   /* largest |g| */
+    int backward; /* that g is negative */
     int scatters; /* any scatter > 0 */
     /* Two channels carry the visibility of all three: those of the least and the largest extinction. The third's lies at
      * `blend` between them. */
@@ -58,10 +59,12 @@ typedef struct tyni_integral {
     float t0, t1; /* t1 <= t0: nothing is gathered */
     int local;    /* not directional */
     tyni_path path;
-    float step; /* psi from knot to knot */
+    /* Knots lie at equal steps of s, 0 .. 1, and psi = span * s^power: densest at the end where a peaked phase function has its
+     * peak, forward at the start, backward (`reversed`) at the far end. */
+    int32_t power, reversed;
     int32_t knots;
     float sum[3][TYNI_MEDIUM_KNOTS];   /* integral up to the knot */
-    float value[3][TYNI_MEDIUM_KNOTS]; /* the integrand there, times step */
+    float value[3][TYNI_MEDIUM_KNOTS]; /* the integrand there, per knot */
 } tyni_integral;
 
 /* t0 .. t1 must lie inside the light's volume (tyni_view_clip). */

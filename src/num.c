@@ -68,7 +68,7 @@ float tyni_num_log(float x)
 void tyni_num_sincos(float x, float *sine, float *cosine)
 {
     /* pi / 2 in three parts of 12 bits and more, so that n * part is exact for |n| < 2^13 */
-    int32_t n = tyni_floori(x * 0.636619772f + 0.5f);
+    int32_t n = tyni_floori(tyni_clampf(x, -8192.0f, 8192.0f) * 0.636619772f + 0.5f);
     float f = (float)n, r, q, s, c;
     r = ((x - f * 1.5703125f) - f * 4.83751297e-4f) - f * 7.54978995e-8f;
     q = r * r;

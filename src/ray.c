@@ -102,8 +102,11 @@ static void meter_end(meter *m)
             m->sum[i] = tyni_maxf(m->sum[i] - shade[i], 0.0f);
         return;
     }
-    if (m->lamp->coloured)
+    if (m->lamp->coloured) {
+        for (int32_t i = 0; i < m->integral->count; i++)
+            m->sum[i] = tyni_maxf(m->sum[i], 0.0f); /* differences of rounded sums */
         return;
+    }
     tyni_integral_at(m->integral, m->integral->t1, all);
     for (int32_t i = 0; i < m->integral->count; i++)
         m->sum[i] = tyni_clampf(m->outside ? all[i] - m->sum[i] : m->sum[i], 0.0f, all[i]);
