@@ -479,37 +479,6 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
 
 /* ---- memory -------------------------------------------------------------------------------------------------------- */
 
-static int outside(int32_t x, int32_t low, int32_t high)
-{
-    return x < low || x > high;
-}
-
-tyn_status tyni_frame_config(tyn_config *c)
-{
-    tyn_config preset;
-    if (tyn_config_preset(&preset, TYN_PRESET_QUALITY, c->width, c->height) != TYN_OK)
-        return TYN_E_CONFIG;
-    c->slices = c->slices ? c->slices : preset.slices;
-    c->samples = c->samples ? c->samples : preset.samples;
-    c->initial_step = c->initial_step ? c->initial_step : preset.initial_step;
-    c->break_threshold = c->break_threshold == 0.0f ? preset.break_threshold : c->break_threshold;
-    c->tolerance = c->tolerance == 0.0f ? preset.tolerance : c->tolerance;
-    c->shadow_size = c->shadow_size ? c->shadow_size : preset.shadow_size;
-    c->steps = c->steps ? c->steps : preset.steps;
-    c->maps = c->maps ? c->maps : preset.maps;
-    c->lights = c->lights ? c->lights : preset.lights;
-    c->workers = c->workers ? c->workers : preset.workers;
-    if (outside(c->slices, 8, 65536) || outside(c->samples, 2, 65536) || outside(c->initial_step, 1, 64) ||
-        (c->initial_step & (c->initial_step - 1)) || outside(c->shadow_size, 1, TYN_MAX_SHADOW) || outside(c->steps, 1, 4096) ||
-        outside(c->maps, 1, TYN_MAX_MAPS) || outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
-        return TYN_E_CONFIG;
-    if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
-        return TYN_E_CONFIG;
-    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_STEPS)
-        return TYN_E_CONFIG;
-    return TYN_OK;
-}
-
 void tyni_frame_place(tyn_context *c, tyni_arena *arena)
 {
     tyni_arena one = {NULL, 0, 0};

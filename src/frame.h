@@ -34,9 +34,6 @@ struct tyn_context {
     tyni_lamp lamp; /* of the light in hand: too large for a stack */
 };
 
-/* Fills in the defaults of a config. TYN_E_CONFIG. */
-tyn_status tyni_frame_config(tyn_config *config);
-
 /* Carves a context for a config with its defaults filled in; in an arena without a block it only counts. */
 void tyni_frame_place(tyn_context *context, tyni_arena *arena);
 

@@ -6,6 +6,7 @@
 #include "art.h"
 #include "check.h"
 #include "composite.h"
+#include "config.h"
 #include "door.h"
 #include "frame.h"
 #include "jobs.h"
@@ -15,39 +16,6 @@
 typedef char context_fits[sizeof(struct tyn_context) <= TYN_CONTEXT_BYTES ? 1 : -1];
 typedef char row_fits[sizeof(tyni_row) <= TYN_ROW_BYTES ? 1 : -1];
 typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
-
-tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t width, int32_t height)
-{
-    static const struct {
-        int32_t divisor, most, samples, rays, shadow;
-        float tolerance;
-    } table[] = {{8, 256, 2, 16, 256, 0.04f},
-                 {4, 512, 2, 32, 1024, 0.02f},
-                 {1, 1024, 1, 96, 2048, 0.01f},
-                 {1, 4096, 1, 192, 4096, 0.003f}};
-    int32_t longer = tyni_maxi(width, height);
-    if (!config)
-        return TYN_E_NULL;
-    if (width < 1 || height < 1 || width > TYN_MAX_SIZE || height > TYN_MAX_SIZE || (uint32_t)preset > TYN_PRESET_REFERENCE)
-        return TYN_E_CONFIG;
-    memset(config, 0, sizeof *config);
-    config->width = width;
-    config->height = height;
-    config->slices = tyni_clampi((width + height) / table[preset].divisor, 16, table[preset].most);
-    config->samples = tyni_maxi((longer + table[preset].samples - 1) / table[preset].samples, 2);
-    /* as many initial rays on a line whatever the size of the picture: what is between two of them looks the same */
-    config->initial_step = 1;
-    while (config->initial_step < 16 && 2 * config->initial_step * table[preset].rays <= config->samples)
-        config->initial_step *= 2;
-    config->break_threshold = 0.06f;
-    config->tolerance = table[preset].tolerance;
-    config->shadow_size = table[preset].shadow;
-    config->steps = 150;
-    config->maps = 1;
-    config->lights = 1;
-    config->workers = 1;
-    return TYN_OK;
-}
 
 static void place(tyn_context *context, tyni_arena *arena)
 {
@@ -63,7 +31,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes)
         return TYN_E_NULL;
     memset(&context, 0, sizeof context);
     context.config = *config;
-    if (tyni_frame_config(&context.config) != TYN_OK)
+    if (tyni_config_fill(&context.config) != TYN_OK)
         return TYN_E_CONFIG;
     place(&context, &arena);
     if (arena.overflow)
@@ -89,7 +57,7 @@ tyn_status tyn_init(tyn_context **context, const tyn_config *config, void *memor
     if (bytes < need)
         return TYN_E_MEMORY;
     own = *config;
-    tyni_frame_config(&own);
+    tyni_config_fill(&own);
     memset(c, 0, sizeof *c);
     c->config = own;
     arena.block = memory;

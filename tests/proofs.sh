@@ -10,7 +10,7 @@ symbols='memcmp memcpy memmove memset sqrtf floorf ceilf'
 system_headers='stddef.h stdint.h string.h math.h'
 intrinsics='emmintrin.h immintrin.h arm_neon.h wasm_simd128.h'
 # The rooms in the order in which data flows: each may include those before it.
-order='base num vec arena check door jobs lanes slide view art fit helpers cascade medium raster slice row tree sample ray query fourier entry gather
+order='base num vec arena check config door jobs lanes slide view art fit helpers cascade medium raster slice row tree sample ray query fourier entry gather
     composite debug frame tyndall'
 
 FLAGS="-std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror -ffp-contract=off -Iinclude -Isrc"

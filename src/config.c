@@ -1,0 +1,68 @@
+/* config.c - see config.h */
+#include "config.h"
+
+#include "base.h"
+
+tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t width, int32_t height)
+{
+    static const struct {
+        int32_t divisor, most, samples, rays, shadow;
+        float tolerance;
+    } table[] = {{8, 256, 2, 16, 256, 0.04f},
+                 {4, 512, 2, 32, 1024, 0.02f},
+                 {1, 1024, 1, 96, 2048, 0.01f},
+                 {1, 4096, 1, 192, 4096, 0.003f}};
+    int32_t longer = tyni_maxi(width, height);
+    if (!config)
+        return TYN_E_NULL;
+    if (width < 1 || height < 1 || width > TYN_MAX_SIZE || height > TYN_MAX_SIZE || (uint32_t)preset > TYN_PRESET_REFERENCE)
+        return TYN_E_CONFIG;
+    memset(config, 0, sizeof *config);
+    config->width = width;
+    config->height = height;
+    config->slices = tyni_clampi((width + height) / table[preset].divisor, 16, table[preset].most);
+    config->samples = tyni_maxi((longer + table[preset].samples - 1) / table[preset].samples, 2);
+    /* as many initial rays on a line whatever the size of the picture: what is between two of them looks the same */
+    config->initial_step = 1;
+    while (config->initial_step < 16 && 2 * config->initial_step * table[preset].rays <= config->samples)
+        config->initial_step *= 2;
+    config->break_threshold = 0.06f;
+    config->tolerance = table[preset].tolerance;
+    config->shadow_size = table[preset].shadow;
+    config->steps = 150;
+    config->maps = 1;
+    config->lights = 1;
+    config->workers = 1;
+    return TYN_OK;
+}
+
+static int outside(int32_t x, int32_t low, int32_t high)
+{
+    return x < low || x > high;
+}
+
+tyn_status tyni_config_fill(tyn_config *c)
+{
+    tyn_config preset;
+    if (tyn_config_preset(&preset, TYN_PRESET_QUALITY, c->width, c->height) != TYN_OK)
+        return TYN_E_CONFIG;
+    c->slices = c->slices ? c->slices : preset.slices;
+    c->samples = c->samples ? c->samples : preset.samples;
+    c->initial_step = c->initial_step ? c->initial_step : preset.initial_step;
+    c->break_threshold = c->break_threshold == 0.0f ? preset.break_threshold : c->break_threshold;
+    c->tolerance = c->tolerance == 0.0f ? preset.tolerance : c->tolerance;
+    c->shadow_size = c->shadow_size ? c->shadow_size : preset.shadow_size;
+    c->steps = c->steps ? c->steps : preset.steps;
+    c->maps = c->maps ? c->maps : preset.maps;
+    c->lights = c->lights ? c->lights : preset.lights;
+    c->workers = c->workers ? c->workers : preset.workers;
+    if (outside(c->slices, 8, 65536) || outside(c->samples, 2, 65536) || outside(c->initial_step, 1, 64) ||
+        (c->initial_step & (c->initial_step - 1)) || outside(c->shadow_size, 1, TYN_MAX_SHADOW) || outside(c->steps, 1, 4096) ||
+        outside(c->maps, 1, TYN_MAX_MAPS) || outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
+        return TYN_E_CONFIG;
+    if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
+        return TYN_E_CONFIG;
+    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_STEPS)
+        return TYN_E_CONFIG;
+    return TYN_OK;
+}
