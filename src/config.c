@@ -8,8 +8,8 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     static const struct {
         int32_t divisor, most, samples, rays, shadow;
         float tolerance;
-    } table[] = {{8, 256, 2, 16, 256, 0.04f},
-                 {4, 512, 2, 32, 1024, 0.02f},
+    } table[] = {{16, 256, 2, 16, 256, 0.04f},
+                 {8, 512, 2, 32, 1024, 0.02f},
                  {1, 1024, 1, 96, 2048, 0.01f},
                  {1, 4096, 1, 192, 4096, 0.003f}};
     int32_t longer = tyni_maxi(width, height);
@@ -20,7 +20,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     memset(config, 0, sizeof *config);
     config->width = width;
     config->height = height;
-    config->slices = tyni_clampi((width + height) / table[preset].divisor, 16, table[preset].most);
+    config->slices = tyni_clampi(2 * (width + height) / table[preset].divisor, 16, table[preset].most);
     config->samples = tyni_maxi((longer + table[preset].samples - 1) / table[preset].samples, 2);
     /* as many initial rays on a line whatever the size of the picture: what is between two of them looks the same */
     config->initial_step = 1;
