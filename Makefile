@@ -3,6 +3,9 @@
 ifeq ($(origin CC),default)
 CC = gcc
 endif
+ifeq ($(filter -j% --jobs%,$(MAKEFLAGS)),)
+MAKEFLAGS += -j2
+endif
 CFLAGS ?= -O2
 B ?= build
 PREFIX ?= /usr/local

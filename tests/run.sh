@@ -5,15 +5,15 @@
 . tests/shell.sh
 export B CC CFLAGS MAKE
 
-# The longest room beside all others: there are two cores.
+# The longest rooms beside all others: there are two cores.
 {
-    "$B/tests" accuracy >"$B/accuracy.log" 2>&1
-    echo $? >"$B/accuracy.status"
+    "$B/tests" accuracy art path workers >"$B/long.log" 2>&1
+    echo $? >"$B/long.status"
 } &
-part "$B/tests" -accuracy
+part "$B/tests" -accuracy -art -path -workers
 for script in tests/proofs*.sh tests/tool*.sh tests/post*.sh; do
     [ -f "$script" ] && part sh "$script"
 done
 wait
-part sh -c "cat '$B/accuracy.log'; exit \$(cat '$B/accuracy.status')"
+part sh -c "cat '$B/long.log'; exit \$(cat '$B/long.status')"
 total

@@ -10,7 +10,7 @@
 #include "test.h"
 #include "tyndall.h"
 
-enum { WIDTH = 64, HEIGHT = 64, PIXELS = WIDTH * HEIGHT, MAP = 256, FACES = 6, FRAMES = 40, BOXES = 14 };
+enum { WIDTH = 64, HEIGHT = 64, PIXELS = WIDTH * HEIGHT, MAP = 256, FACES = 6, FRAMES = 32, BOXES = 14 };
 
 typedef struct stage {
     float corner[BOXES * 8 + 4][3];

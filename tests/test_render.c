@@ -443,7 +443,7 @@ static void test_stats(void)
         CHECK_NEAR(s->rays_percent, 100.0 * (double)(s->rays + s->rejected) / (W * H), 1e-4);
         CHECK(s->rejected >= 0 && s->rejected <= W * H && s->walks >= 0 && s->walks <= s->rays && s->breaks <= s->samples);
         if (config.method == TYN_METHOD_EPIPOLAR)
-            CHECK(s->slices > 8 && s->slices <= W + H && s->samples >= s->rays && s->breaks > 0);
+            CHECK(s->slices > 8 && s->slices <= 2 * (W + H) && s->samples >= s->rays && s->breaks > 0);
         else
             CHECK(s->slices == 0 && s->breaks == 0);
         if (config.method == TYN_METHOD_MARCH)
