@@ -267,7 +267,9 @@ static void test_grazing(void)
             }
     }
     CHECK(seen > 50000);
-    CHECK_NEAR(worst, 0, 3e-7); /* twice the worst of many seeds; times depth / height: what the last place of the gradient does over an image */
+    CHECK_NEAR(
+        worst, 0,
+        3e-7); /* twice the worst of many seeds; times depth / height: what the last place of the gradient does over an image */
     easel_free(&e);
 }
 
