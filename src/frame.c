@@ -42,7 +42,8 @@ typedef struct pass {
     int first, last;            /* of the lights */
 } pass;
 
-static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
+/* A worker's scratch, and its bytes; before it is placed, only the bytes. */
+static size_t scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
     size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
@@ -59,6 +60,7 @@ static void scratch_of(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);
     s->stats = tyni_arena_take(&arena, 1, sizeof *s->stats);
+    return arena.used;
 }
 
 /* ---- slices -------------------------------------------------------------------------------------------------------- */
@@ -481,27 +483,18 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
 
 void tyni_frame_place(tyn_context *c, tyni_arena *arena)
 {
-    tyni_arena one = {NULL, 0, 0};
-    size_t samples, words;
     const tyn_config *g = &c->config;
+    tyni_scratch s;
+    size_t samples;
     c->samples = tyni_mini(g->samples, tyni_maxi(g->width, g->height));
     samples = (size_t)c->samples;
-    words = (size_t)tyni_sample_words(c->samples);
     c->entries = tyni_arena_take(arena, samples * (size_t)g->slices, sizeof *c->entries);
     c->thirds = g->textured ? tyni_arena_take(arena, samples * (size_t)g->slices, sizeof *c->thirds) : NULL;
     c->scales = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->scales);
     c->light = g->lights > 1 ? tyni_arena_take(arena, (size_t)g->width * (size_t)g->height, 3 * sizeof *c->light) : NULL;
     c->counts = tyni_arena_take(arena, (size_t)g->workers, sizeof *c->counts);
-    /* the parts of a scratch, in the order of scratch_of */
-    tyni_arena_take(&one, 1, TYN_ROW_BYTES);
-    tyni_arena_take(&one, 2 * tyni_row_room(g->shadow_size, g->maps), sizeof(uint16_t));
-    tyni_arena_take(&one, tyni_row_room(g->shadow_size, g->maps), sizeof(float));
-    for (int32_t i = 0; i < 4; i++)
-        tyni_arena_take(&one, samples, sizeof(float));
-    for (int32_t i = 0; i < 3; i++)
-        tyni_arena_take(&one, words, sizeof(uint32_t));
-    tyni_arena_take(&one, 1, sizeof(tyn_stats));
-    c->scratch_bytes = one.used;
-    c->scratch = tyni_arena_take(arena, (size_t)g->workers, one.used);
+    c->scratch = NULL;
+    c->scratch_bytes = scratch_of(c, 0, &s);
+    c->scratch = tyni_arena_take(arena, (size_t)g->workers, c->scratch_bytes);
     c->bytes = arena->used;
 }
