@@ -333,10 +333,31 @@ typedef enum tyn_method {
     TYN_METHOD_NONE = 3       /* no scattered light; the surface is attenuated all the same */
 } tyn_method;
 
+/* How a ray finds its lit intervals. In slices, all but the fixed steps read the slice's row of thresholds and give the same
+ * bytes; where a ray has no row (march, subsample, rejected pixels) they are an exact walk over the map's texels. */
 typedef enum tyn_rays {
-    TYN_RAYS_WORDS = 0, /* exact on the map's texels; in slices on the row of thresholds, as packed visibility words */
-    TYN_RAYS_STEPS = 1  /* fixed steps, sampled in the middle of each (ED10) */
+    TYN_RAYS_WORDS = 0,  /* compares packed into words of 32 columns, transitions by bit scans */
+    TYN_RAYS_STEPS = 1,  /* fixed steps inside the light's frustum, sampled in the middle of each (ED10) */
+    TYN_RAYS_TREE = 2,   /* a 1D min/max tree over the row (IVB section 6.4) */
+    TYN_RAYS_SWEEP = 3,  /* words that are kept while the slice's rays are taken in order: no compares, for machines without
+                            vectors */
+    TYN_RAYS_COLUMNS = 4 /* column by column: IVB's march without its tree, for comparison */
 } tyn_rays;
+
+/* How lines lie on the screen and how pixels are put together from them. */
+typedef enum tyn_gather {
+    TYN_GATHER_SHEAR = 0, /* tyndall's: samples on pixel columns or rows, lines only where the screen shows them, 2 taps */
+    TYN_GATHER_IVB = 1,   /* equidistant border points, short lines stretched; 2 lines x 2 samples, bilateral (IVB section 6) */
+    TYN_GATHER_ED10 = 2   /* equidistant border points; 3 to 5 taps on each of 2 lines, bilateral, and the next outer line where
+                             none fits (ED10 section 4.3) */
+} tyn_gather;
+
+/* Weights of TYN_GATHER_ED10's taps, over distance and over depth. */
+typedef enum tyn_kernel {
+    TYN_KERNEL_GAUSSIAN = 0, /* e^(-a x^2) */
+    TYN_KERNEL_SHEPARD = 1,  /* a / x^2, kept finite at 0 */
+    TYN_KERNEL_THRESHOLD = 2 /* of depth: in or out */
+} tyn_kernel;
 
 typedef enum tyn_preset {
     TYN_PRESET_HANDHELD = 0,
@@ -361,10 +382,16 @@ typedef struct tyn_config {
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
     tyn_method method;
     tyn_rays rays;
-    int32_t maps;     /* most shadow maps of one light, 1 .. TYN_MAX_MAPS; 0: 1 */
-    int32_t textured; /* not 0: room for lights with textures or tints; 2 more bytes a sample */
-    int32_t lights;   /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
-    int32_t workers;  /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
+    tyn_gather gather;
+    tyn_kernel kernel; /* of TYN_GATHER_ED10 */
+    int32_t taps;      /* of TYN_GATHER_ED10: on each line, 3 .. 5; 0: 3 */
+    int32_t downscale; /* 1, 2, 4, 8; 0: 1. Epipolar and march are computed for each such column and row, and the pixels between
+                          by bilateral up-scaling; those that it does not fit have rays of their own (IVB section 6.7) */
+    int32_t budget;    /* of TYN_METHOD_SUBSAMPLE: rays, about, 1 .. slices * samples; 0: as many as the slices' initial ones */
+    int32_t maps;      /* most shadow maps of one light, 1 .. TYN_MAX_MAPS; 0: 1 */
+    int32_t textured;  /* not 0: room for lights with textures or tints; 2 more bytes a sample */
+    int32_t lights;    /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
+    int32_t workers;   /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
 } tyn_config;
 
 #define TYN_MAX_LIGHTS 16
@@ -377,7 +404,8 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
 tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_ALIGNMENT 64
 
-/* The same number as a constant expression, for a static block:
+/* The same number as a constant expression, for a static block, of a config whose rays, gather and downscale are 0 (what others
+ * add: TYN_MEMORY_TREE ... below):
  *     static union { uint64_t align[8]; uint8_t bytes[TYN_MEMORY(320, 240, 64, 160, 256, 1, 1)]; } block;
  * (and see to its alignment: TYN_ALIGNMENT). All arguments as in tyn_config, with no zeros. */
 #define TYN_MEMORY(width, height, slices, samples, shadow_size, lights, workers)                                               \
@@ -389,9 +417,22 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
      (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                    \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
-#define TYN_CONTEXT_BYTES 1728
-#define TYN_STATS_BYTES 128
-#define TYN_ROW_BYTES 1088
+/* More, with TYN_RAYS_TREE, with TYN_RAYS_SWEEP, with TYN_GATHER_IVB or _ED10, and with downscale. */
+#define TYN_MEMORY_TREE(shadow_size, maps, workers)                                                                            \
+    ((size_t)(workers)*TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4) + 19, 4))
+#define TYN_MEMORY_SWEEP(width, height, samples, shadow_size, maps, workers)                                                   \
+    ((size_t)(workers) *                                                                                                       \
+     (TYNI_BYTES(2 * (size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                                                        \
+      TYNI_BYTES(2 * (size_t)(maps) * ((size_t)(shadow_size) + 4) / 32 + 2, 4) +                                               \
+      TYNI_BYTES(TYNI_SAMPLES(width, height, samples) + 1, 4) + TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 2)))
+#define TYN_MEMORY_BORDER(slices) (TYNI_BYTES(slices, 16) + TYNI_BYTES(slices, 4))
+#define TYN_MEMORY_DOWNSCALE(width, height, factor, textured)                                                                  \
+    (TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 4) + TYNI_BYTES(TYNI_POINTS(height, factor), 12) +   \
+     ((textured) ? TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 2) : 0))
+#define TYNI_POINTS(pixels, factor) (((size_t)(pixels)-1 + (size_t)(factor)-1) / (size_t)(factor) + 1)
+#define TYN_CONTEXT_BYTES 2560
+#define TYN_STATS_BYTES 256
+#define TYN_ROW_BYTES 1216
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))
 #define TYNI_SAMPLES(width, height, samples)                                                                                   \
@@ -407,27 +448,50 @@ tyn_status tyn_init(tyn_context **context, const tyn_config *config, void *memor
 /* What happened in a frame. Sums over lights and workers; deterministic but for the times. */
 typedef struct tyn_stats {
     int64_t pixels;
-    int64_t slices;     /* slices that cross the screen */
-    int64_t samples;    /* samples on them */
+    int64_t slices;     /* slices that cross the screen and the light's volume */
+    int64_t culled;     /* slices laid out that miss it: nothing was done for them */
+    int64_t samples;    /* samples on slices (of a grid: its points) */
     int64_t breaks;     /* discontinuities of depth between neighbouring samples */
-    int64_t rays;       /* rays integrated along slices (march: per pixel; subsample: per grid point) */
+    int64_t initial;    /* rays before refinement on light: at initial steps and breaks */
+    int64_t rays;       /* rays integrated in all (march: per pixel; subsample: per grid point) */
     int64_t walks;      /* of these, near the epipole: exact walks over the map's texels */
-    int64_t rejected;   /* pixels that no sample fits, computed by a ray of their own */
-    float rays_percent; /* (rays + rejected) in percent of the pixels */
-    size_t memory;      /* bytes of the context */
-    uint64_t slice_ns;  /* slices: depth, breaks, rows, rays, interpolation; 0 without a clock */
-    uint64_t gather_ns; /* pixels: reconstruction, rejected pixels, composite */
+    int64_t columns;    /* thresholds in the rows */
+    int64_t looked;     /* nodes of the tree (or words, or columns, as config.rays is) that rays looked at */
+    int64_t rejected;   /* pixels that no sample fits, computed by a ray of their own; with downscale, of the coarse picture */
+    int64_t corrected;  /* with downscale: pixels that up-scaling does not fit, computed by a ray of their own */
+    float rays_percent; /* (rays + rejected + corrected) in percent of the pixels */
+    float looked_per_ray; /* looked / (rays - walks); 0 without rows */
+    size_t memory;        /* bytes of the context */
+    /* Nanoseconds on the wall; 0 without a clock. total is the sum. */
+    uint64_t slice_ns;  /* slices: all up to the finished lines */
+    uint64_t gather_ns; /* pixels: all after them */
     uint64_t total_ns;
+    /* Nanoseconds by stage, added up over workers; 0 without a clock. */
+    uint64_t sample_ns;    /* slices: lines, depth along them, breaks, initial rays */
+    uint64_t row_ns;       /* slices: rows of thresholds, and their trees or sorted orders */
+    uint64_t ray_ns;       /* slices: rays and refinement; grids: rays */
+    uint64_t line_ns;      /* slices: interpolation along lines, storing them */
+    uint64_t unwarp_ns;    /* pixels, or with downscale points, from lines; phase functions */
+    uint64_t correct_ns;   /* rays of rejected and corrected pixels; of all with march */
+    uint64_t upscale_ns;   /* with downscale: pixels from the coarse picture; phase functions */
+    uint64_t composite_ns; /* colour, transmittance, encoding */
 } tyn_stats;
 
 typedef enum tyn_debug {
     TYN_DEBUG_NONE = 0,
     TYN_DEBUG_LINES = 1,    /* the slices' lines over the darkened picture */
-    TYN_DEBUG_SAMPLES = 2,  /* ray samples: initial ones white, those at breaks green */
+    TYN_DEBUG_SAMPLES = 2,  /* ray samples: initial ones white, those at breaks green, those refined on light blue */
     TYN_DEBUG_BREAKS = 3,   /* samples at breaks, green */
     TYN_DEBUG_SCATTER = 4,  /* the texture of visibility: a row is a slice, a column a sample */
-    TYN_DEBUG_REJECTED = 5, /* pixels with a ray of their own, red */
-    TYN_DEBUG_OUTSIDE = 6   /* surface points outside the first light's shadow map, magenta */
+    TYN_DEBUG_REJECTED = 5, /* pixels with a ray of their own: red, and yellow those of the pass after up-scaling */
+    TYN_DEBUG_OUTSIDE = 6,  /* surface points outside the first light's shadow map, magenta */
+    TYN_DEBUG_SOURCES =
+        7,             /* the texture of IVB figure 17: a row is a slice, a column a sample, its colour its pair of sources */
+    TYN_DEBUG_ROW = 8, /* the row of the slice at debug_x, debug_y: columns to the right, positions downwards from the light;
+                          lit yellow, dark blue; across it that sample's ray, bright where it gathers */
+    TYN_DEBUG_TREE =
+        9 /* of a context with TYN_RAYS_TREE, else TYN_E_DISPLAY: the same, and below it the levels of the tree: each node from
+             its least to its greatest threshold, those that the ray looked at bright: lit green, dark red, else white */
 } tyn_debug;
 
 /* What a depth image holds. All zero: view-space depth in metres. */
@@ -474,7 +538,8 @@ typedef struct tyn_frame {
     const tyn_medium *media; /* medium_count of them, 0 .. TYN_MAX_MEDIA; NULL with 0 */
     int32_t medium_count;
     tyn_display display;
-    tyn_debug debug;              /* drawn into target instead of the picture */
+    tyn_debug debug;              /* drawn into target instead of the picture; scatter is then not to be used */
+    float debug_x, debug_y;       /* of TYN_DEBUG_ROW and _TREE: pixel coordinates; 0, 0: the middle of the picture */
     const tyn_executor *executor; /* NULL: the calling thread */
     tyn_clock clock;              /* NULL: no times */
     void *clock_context;

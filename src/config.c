@@ -30,6 +30,8 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->tolerance = table[preset].tolerance;
     config->shadow_size = table[preset].shadow;
     config->steps = 150;
+    config->taps = 3;
+    config->downscale = 1;
     config->maps = 1;
     config->lights = 1;
     config->workers = 1;
@@ -53,6 +55,8 @@ tyn_status tyni_config_fill(tyn_config *c)
     c->tolerance = c->tolerance == 0.0f ? preset.tolerance : c->tolerance;
     c->shadow_size = c->shadow_size ? c->shadow_size : preset.shadow_size;
     c->steps = c->steps ? c->steps : preset.steps;
+    c->taps = c->taps ? c->taps : preset.taps;
+    c->downscale = c->downscale ? c->downscale : preset.downscale;
     c->maps = c->maps ? c->maps : preset.maps;
     c->lights = c->lights ? c->lights : preset.lights;
     c->workers = c->workers ? c->workers : preset.workers;
@@ -62,7 +66,10 @@ tyn_status tyni_config_fill(tyn_config *c)
         return TYN_E_CONFIG;
     if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
         return TYN_E_CONFIG;
-    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_STEPS)
+    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_COLUMNS ||
+        (uint32_t)c->gather > (uint32_t)TYN_GATHER_ED10 || (uint32_t)c->kernel > (uint32_t)TYN_KERNEL_THRESHOLD)
+        return TYN_E_CONFIG;
+    if (outside(c->taps, 3, 5) || outside(c->downscale, 1, 8) || (c->downscale & (c->downscale - 1)) || c->budget < 0)
         return TYN_E_CONFIG;
     return TYN_OK;
 }

@@ -5,13 +5,33 @@
 #include "entry.h"
 #include "sample.h"
 
-enum mark { MARK_NONE = 0, MARK_LINE = 1, MARK_RAY = 2, MARK_BREAK = 3 };
+enum mark { MARK_NONE = 0, MARK_LINE = 1, MARK_RAY = 2, MARK_BREAK = 3, MARK_REFINED = 4 };
+#define MARK_BITS 4 /* the sample's first source stands above them */
 
-void tyni_debug_mark(uint32_t *entries, const uint32_t *rays, const uint32_t *breaks, int32_t first, int32_t last)
+static uint32_t *entries_of(const tyni_pass *p, int32_t line)
 {
-    for (int32_t j = first; j <= last; j++) {
-        int side = (j < last && tyni_sample_bit(breaks, j)) || (j > first && tyni_sample_bit(breaks, j - 1));
+    return p->lines.entries + (ptrdiff_t)line * p->lines.pitch;
+}
+
+void tyni_debug_mark_initial(const tyni_pass *p, int32_t line, const tyni_slice *slice, const uint32_t *rays,
+                             const uint32_t *breaks)
+{
+    uint32_t *entries = entries_of(p, line);
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        int side = (j < slice->last && tyni_sample_bit(breaks, j)) || (j > slice->first && tyni_sample_bit(breaks, j - 1));
         entries[j] = side ? MARK_BREAK : tyni_sample_bit(rays, j) ? MARK_RAY : MARK_LINE;
+    }
+}
+
+void tyni_debug_mark_sources(const tyni_pass *p, int32_t line, const tyni_slice *slice, const uint32_t *rays)
+{
+    uint32_t *entries = entries_of(p, line), source = 0;
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        if (tyni_sample_bit(rays, j)) {
+            entries[j] = entries[j] == MARK_LINE ? MARK_REFINED : entries[j];
+            source = (uint32_t)j;
+        }
+        entries[j] |= source << MARK_BITS;
     }
 }
 
@@ -22,76 +42,89 @@ static void paint(float rgb[3], float r, float g, float b)
     rgb[2] = b;
 }
 
-/* The mark of the sample whose line passes through the pixel; MARK_NONE where none does. */
-static uint32_t mark_at(const tyni_slices *slices, const tyni_field *field, int32_t x, int32_t y)
+/* The mark of the sample at the pixel; MARK_NONE where no line passes through it. */
+static uint32_t mark_at(const tyni_pass *p, int32_t x, int32_t y)
 {
-    float px = (float)x + 0.5f, py = (float)y + 0.5f, k, p, along, size, spacing;
-    const tyni_sector *s = tyni_slice_find(slices, px, py, &k);
-    int32_t line, pixel = s->along_y ? y : x;
-    if (!s->count || pixel % slices->stride)
+    int32_t line, sample, pixel;
+    float distance;
+    if (!tyni_pass_nearest(p, (float)x + 0.5f, (float)y + 0.5f, &line, &sample, &distance) || distance > 0.5f)
         return MARK_NONE;
-    /* lines draw together towards the epipole */
-    p = s->along_y ? py : px;
-    along = s->along_y ? slices->ey : slices->ex;
-    size = tyni_absf(s->border * slices->ew - along);
-    spacing = size > 0.0f ? s->spacing * tyni_absf(p * slices->ew - along) / size : 0.0f;
-    line = (int32_t)(k + 0.5f);
-    if (tyni_absf(k - (float)line) * spacing > 0.5f)
-        return MARK_NONE;
-    return field->entries[(ptrdiff_t)(s->start + line) * field->pitch + pixel / slices->stride];
+    if (p->slices.layout == TYNI_LAYOUT_SHEAR && p->slices.stride > 1) { /* between samples there is nothing to show */
+        float k;
+        pixel = tyni_slice_find(&p->slices, (float)x + 0.5f, (float)y + 0.5f, &k)->along_y ? y : x;
+        if (pixel % p->slices.stride)
+            return MARK_NONE;
+    }
+    return entries_of(p, line)[sample] & ((1u << MARK_BITS) - 1u);
 }
 
-static void paint_scatter(const tyni_view *view, const tyni_slices *slices, const tyni_field *field, int32_t x, int32_t y,
-                          float rgb[3])
+/* A bright colour, different for neighbouring numbers. */
+static void paint_number(float rgb[3], uint32_t n)
 {
-    int32_t line = (int32_t)((int64_t)y * slices->count / view->height);
-    int32_t sample = (int32_t)((int64_t)x * slices->samples / view->width);
-    uint32_t entry = field->entries[(ptrdiff_t)line * field->pitch + sample];
-    float low = tyni_entry_low(entry, field->scales[line]), high = tyni_entry_high(entry, field->scales[line]);
-    if (tyni_entry_code(entry))
+    n *= 0x9e3779b1u;
+    paint(rgb, 0.1f + (float)(n >> 24) * 0.004f, 0.1f + (float)(n >> 16 & 255u) * 0.004f,
+          0.1f + (float)(n >> 8 & 255u) * 0.004f);
+}
+
+/* The texture of lines: a row is a slice, a column a sample. */
+static void paint_texture(const tyni_pass *p, int32_t x, int32_t y, float rgb[3])
+{
+    int32_t line = (int32_t)((int64_t)y * p->slices.count / p->view.height);
+    int32_t sample = (int32_t)((int64_t)x * p->slices.samples / p->view.width);
+    uint32_t entry = entries_of(p, line)[sample];
+    paint(rgb, 0.1f, 0.0f, 0.1f);
+    if (p->frame->debug == TYN_DEBUG_SOURCES) {
+        uint32_t mark = entry & ((1u << MARK_BITS) - 1u);
+        if (mark == MARK_LINE)
+            paint_number(rgb, entry >> MARK_BITS);
+        else if (mark == MARK_BREAK)
+            paint(rgb, 0.0f, 5.0f, 0.0f);
+        else if (mark != MARK_NONE)
+            paint(rgb, 5.0f, 5.0f, 5.0f);
+    } else if (tyni_entry_code(entry)) {
+        float low = tyni_entry_low(entry, p->lines.scales[line]), high = tyni_entry_high(entry, p->lines.scales[line]);
         paint(rgb, low, 0.5f * (low + high), high);
-    else
-        paint(rgb, 0.1f, 0.0f, 0.1f);
+    }
 }
 
-static int outside(const tyni_view *view, const tyni_lamp *lamp, int32_t x, int32_t y, float depth)
+static int outside(const tyni_pass *p, int32_t x, int32_t y, float depth)
 {
-    tyni_vec3 p = tyni_view_point(view, (float)x + 0.5f, (float)y + 0.5f, tyni_view_depth(view, depth));
-    for (int32_t i = 0; i < lamp->map_count; i++) {
-        const tyni_map *map = &lamp->maps[i];
-        float u = tyni_vec_dot(map->u.v, p) + map->u.c, v = tyni_vec_dot(map->v.v, p) + map->v.c;
-        float w = tyni_vec_dot(map->w.v, p) + map->w.c, width = (float)map->texels.width, height = (float)map->texels.height;
-        if (w > 0.0f && u >= 0.0f && v >= 0.0f && u <= w * width && v <= w * height)
+    tyni_vec3 at = tyni_view_point(&p->view, (float)x + 0.5f, (float)y + 0.5f, tyni_view_depth(&p->view, depth));
+    for (int32_t i = 0; i < p->lamp->map_count; i++) {
+        const tyni_map *map = &p->lamp->maps[i];
+        float u = tyni_form_at(&map->u, at), v = tyni_form_at(&map->v, at), w = tyni_form_at(&map->w, at);
+        if (w > 0.0f && u >= 0.0f && v >= 0.0f && u <= w * (float)map->texels.width && v <= w * (float)map->texels.height)
             return 0;
     }
     return 1;
 }
 
-void tyni_debug_pixel(tyn_debug debug, const tyni_view *view, const tyni_lamp *lamp, const tyni_slices *slices,
-                      const tyni_field *field, int32_t x, int32_t y, float depth, int rejected, float rgb[3])
+static void paint_mark(tyn_debug debug, uint32_t mark, float rgb[3])
 {
-    uint32_t mark = MARK_NONE;
-    if (debug == TYN_DEBUG_OUTSIDE) {
-        if (outside(view, lamp, x, y, depth))
-            paint(rgb, 3.0f, 0.0f, 3.0f);
-        return;
-    }
-    if (debug == TYN_DEBUG_REJECTED) {
-        if (rejected)
-            paint(rgb, 5.0f, 0.0f, 0.0f);
-        return;
-    }
-    if (!slices->count)
-        return; /* no epipolar pass: nothing to show */
-    if (debug == TYN_DEBUG_SCATTER) {
-        paint_scatter(view, slices, field, x, y, rgb);
-        return;
-    }
-    mark = mark_at(slices, field, x, y);
-    if (mark == MARK_BREAK && debug != TYN_DEBUG_LINES)
-        paint(rgb, 0.0f, 5.0f, 0.0f);
-    else if (mark == MARK_RAY && debug == TYN_DEBUG_SAMPLES)
-        paint(rgb, 5.0f, 5.0f, 5.0f);
-    else if (mark != MARK_NONE && debug == TYN_DEBUG_LINES)
+    if (debug == TYN_DEBUG_LINES && mark != MARK_NONE)
         paint(rgb, 1.0f, 0.7f, 0.1f);
+    else if (debug != TYN_DEBUG_LINES && mark == MARK_BREAK)
+        paint(rgb, 0.0f, 5.0f, 0.0f);
+    else if (debug == TYN_DEBUG_SAMPLES && mark == MARK_RAY)
+        paint(rgb, 5.0f, 5.0f, 5.0f);
+    else if (debug == TYN_DEBUG_SAMPLES && mark == MARK_REFINED)
+        paint(rgb, 0.2f, 0.5f, 5.0f);
+}
+
+void tyni_debug_pixel(const tyni_pass *p, int32_t x, int32_t y, float depth, int rejected, float rgb[3])
+{
+    tyn_debug debug = p->frame->debug;
+    if (debug == TYN_DEBUG_OUTSIDE) {
+        if (outside(p, x, y, depth))
+            paint(rgb, 3.0f, 0.0f, 3.0f);
+    } else if (debug == TYN_DEBUG_REJECTED) {
+        if (rejected)
+            paint(rgb, 5.0f, p->grid.rows ? 4.0f : 0.0f, 0.0f);
+    } else if (!p->slices.count) {
+        return; /* no epipolar pass: nothing to show */
+    } else if (debug == TYN_DEBUG_SCATTER || debug == TYN_DEBUG_SOURCES) {
+        paint_texture(p, x, y, rgb);
+    } else {
+        paint_mark(debug, mark_at(p, x, y), rgb);
+    }
 }

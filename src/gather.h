@@ -1,28 +1,47 @@
-/* gather.h - from epipolar samples to screen pixels (IVB section 6.6: two lines, bilateral weights). */
+/* gather.h - from epipolar samples to screen pixels.
+ *
+ * Three ways for lines, one for a grid. All weigh samples by how near their depth is to the pixel's: 1 within the threshold of
+ * relative depth that also makes breaks, then falling with the fourth power (IVB section 6.6). Looser weights would leak. */
 #ifndef TYNI_GATHER_H
 #define TYNI_GATHER_H
 
+#include "border.h"
 #include "slice.h"
 
 #include "base.h"
 
-/* The finished lines of one light. */
+/* Finished lines of one light. */
 typedef struct tyni_field {
-    const uint32_t *entries; /* entry.h; slice after slice, `pitch` apart */
-    const uint16_t *thirds;  /* the third channel; NULL: none */
-    const float (*scales)[3];
+    uint32_t *entries; /* entry.h; line after line, `pitch` apart */
+    uint16_t *thirds;  /* the third channel; NULL: none */
+    float (*scales)[3];
     int32_t pitch;
-    float threshold; /* of relative depth, as for breaks: looser weights would leak */
-    /* TYN_METHOD_SUBSAMPLE: a grid with a ray each `spacing` pixels instead of slices; a grid row takes the place of a slice */
-    int32_t spacing, columns, rows;
+    float threshold; /* of relative depth */
 } tyni_field;
 
-/* Visibility at the pixel centre (x, y) with depth relative to far, as {low, high} or {red, green, blue}. 0: no sample fits,
- * the pixel is rejected.
- */
-int tyni_gather_slices(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3]);
+/* Points on the screen at (i * step_x + 0.5, j * step_y + 0.5): a line of the field is a row of them. */
+typedef struct tyni_grid {
+    tyni_field field;
+    int32_t columns, rows;
+    float step_x, step_y;
+} tyni_grid;
 
-/* The same on the grid. Where no sample fits it takes the nearest in depth: naive, and never rejected. */
-void tyni_gather_grid(const tyni_field *field, float x, float y, float depth, float value[3]);
+/* How pixels are put together from lines. */
+typedef struct tyni_gather {
+    tyn_gather way;
+    tyn_kernel kernel; /* of TYN_GATHER_ED10 */
+    int32_t taps;
+} tyni_gather;
+
+/* Visibility at (x, y) with depth relative to far, as {low, high} or {red, green, blue}. 0: no sample fits, the pixel is
+ * rejected. */
+int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
+                      float depth, float value[3]);
+
+/* The same on a grid: 2 x 2 points. */
+int tyni_gather_grid(const tyni_grid *grid, float x, float y, float depth, float value[3]);
+
+/* The point of these with the nearest depth, whatever it is: naive sub-sampling, which rejects nothing. */
+void tyni_gather_nearest(const tyni_grid *grid, float x, float y, float depth, float value[3]);
 
 #endif

@@ -8,9 +8,9 @@
 #include "jobs.h"
 #include "medium.h"
 #include "num.h"
-#include "ray.h"
 #include "slide.h"
 #include "view.h"
+#include "walk.h"
 
 #define BATCH 64 /* points a job */
 
@@ -50,7 +50,7 @@ static void add_light(const pass *p, const tyn_light *light, int32_t first, int3
         float s = ray_of(p, &p->points[i], &v), rgb[3];
         if (!(s > 0.0f))
             continue;
-        tyni_ray_pixel(&lamp, &p->medium, &v, s, 0, rgb);
+        tyni_walk_pixel(&lamp, &p->medium, &v, s, 0, rgb);
         for (int32_t c = 0; c < 3; c++)
             p->results[i].scatter[c] += rgb[c];
     }

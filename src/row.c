@@ -188,29 +188,34 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
     piece->w = map->w;
     piece->from = c.from;
     piece->to = c.to;
+    piece->first = row->columns;
     piece->threshold = w->threshold;
     piece->split = w->split;
     if (!ends_begin(&e, piece, slice, view, map, p))
         return;
     fill(piece, w->threshold, w->split, map, &c, &e);
     row->count++;
+    row->columns += 2 * piece->steps;
     w->threshold += 2 * piece->steps;
     w->split += piece->steps;
     w->room -= (size_t)piece->steps;
 }
 
-void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slices *slices,
-                    const tyni_slice *slice, const tyni_lamp *lamp, const tyni_view *view, float reach)
+void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
+                    const tyni_lamp *lamp, const tyni_view *view, float reach)
 {
     /* what no map has covered yet: a local light's columns as two quarters, since half a circle cannot be clipped by lines */
     fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
     int32_t fans = lamp->kind == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
-    float pa = tyni_slice_p(slices, slice->first), pb = tyni_slice_p(slices, slice->last), p[2], u[2], v[2];
+    float pa = tyni_slice_p(slice, slice->first), pb = tyni_slice_p(slice, slice->last), p[2], u[2], v[2];
     pen w = {threshold, split, room};
+    int rising = (0.5f * (pa + pb) < slice->epipole) != lamp->behind; /* p rises towards the lit end */
     row->count = 0;
+    row->columns = 0;
+    row->threshold = threshold;
     /* the line's lit end comes first: the one nearer to the light on the screen */
-    p[0] = (pa < slice->epipole) != lamp->behind ? pb : pa;
-    p[1] = (pa < slice->epipole) != lamp->behind ? pa : pb;
+    p[0] = rising == (pa < pb) ? pb : pa;
+    p[1] = rising == (pa < pb) ? pa : pb;
     row->p_start = p[0];
     row->p_scale = pa != pb ? 65534.0f / (p[1] - p[0]) : 0.0f;
     if (fans == 1)

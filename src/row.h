@@ -20,6 +20,7 @@
 /* The columns of one shadow map, or of a part of it: where several maps meet (cascades, the faces of a cube) each column is
  * looked up in the first map that covers it, and the row is a chain of pieces. */
 typedef struct tyni_piece {
+    int32_t first;             /* column of the row that is its column 0 */
     const uint16_t *threshold; /* of column i; lit for a ray at position q if q < threshold */
     const float *split;        /* of step k: 0 .. 1; 1: one texel, its two columns are alike */
     int32_t steps;
@@ -33,8 +34,10 @@ typedef struct tyni_piece {
 #define TYNI_ROW_PIECES 16
 
 typedef struct tyni_row {
-    int32_t count;          /* of pieces; 0: the slice misses all maps */
-    float p_start, p_scale; /* position of a ray through p: (p - p_start) * p_scale */
+    int32_t count;             /* of pieces; 0: the slice misses all maps */
+    int32_t columns;           /* of all pieces, one after the other */
+    const uint16_t *threshold; /* of these */
+    float p_start, p_scale;    /* position of a ray through p: (p - p_start) * p_scale */
     tyni_piece pieces[TYNI_ROW_PIECES];
 } tyni_row;
 
@@ -53,8 +56,8 @@ static inline size_t tyni_row_room(int32_t shadow_size, int32_t maps)
 
 /* Builds the row into `threshold` and `split`. `reach`: no view ray gets farther from the axis camera - light than this
  * (directional lights; what lies beyond is not built). */
-void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slices *slices,
-                    const tyni_slice *slice, const tyni_lamp *lamp, const tyni_view *view, float reach);
+void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
+                    const tyni_lamp *lamp, const tyni_view *view, float reach);
 
 /* 0 .. 65534 */
 static inline uint32_t tyni_row_position(const tyni_row *row, float p)

@@ -3,8 +3,7 @@
 
 #include "base.h"
 
-void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slice *slice, const tyni_view *view,
-                        const tyni_door *door)
+void tyni_sample_depths(float *depth, const tyni_slice *slice, const tyni_view *view, const tyni_door *door)
 {
     const tyn_image *image = door->image;
     ptrdiff_t stride = door->stride;
@@ -13,8 +12,8 @@ void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slic
     ptrdiff_t along = slice->along_y ? stride : (ptrdiff_t)sizeof(float);
     ptrdiff_t across = slice->along_y ? (ptrdiff_t)sizeof(float) : stride;
     for (int32_t j = slice->first; j <= slice->last; j++) {
-        int32_t p = tyni_mini(j * slices->stride, last_p);
-        float m = slice->m0 + slice->slope * tyni_slice_p(slices, j);
+        float at = tyni_slice_p(slice, j), m = slice->m0 + slice->slope * at;
+        int32_t p = (int32_t)tyni_clampf(at, 0.0f, (float)last_p);
         int32_t i = (int32_t)tyni_clampf(m, 0.0f, (float)last_m);
         const uint8_t *pixel = (const uint8_t *)image->pixels + along * p + across * i;
         if (door->plain)
@@ -42,8 +41,7 @@ static void set(uint32_t *words, int32_t j)
     words[j >> 5] |= 1u << (j & 31);
 }
 
-int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slices *slices, const tyni_slice *slice,
-                         int32_t step)
+int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slice *slice, int32_t step)
 {
     int32_t words = tyni_sample_words(slice->last + 1), count = 0, dense, from, to;
     uint32_t carry = 0;
@@ -56,7 +54,7 @@ int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slic
         set(rays, j);
     /* near the epipole light varies faster: IVB section 6.2. Four initial steps on either side of it. */
     dense = tyni_maxi(step / 4, 1);
-    from = (int32_t)(tyni_clampf(slice->epipole, -1e6f, 1e6f) / (float)slices->stride);
+    from = (int32_t)tyni_clampf((tyni_clampf(slice->epipole, -1e6f, 1e6f) - slice->p0 + 0.5f) / slice->dp, -1e6f, 1e6f);
     to = tyni_mini(from + 4 * step, slice->last);
     from = tyni_maxi(from - 4 * step, slice->first);
     for (int32_t j = (from + dense - 1) / dense * dense; j <= to; j += dense)

@@ -19,8 +19,7 @@ static inline int tyni_sample_bit(const uint32_t *words, int32_t j)
 }
 
 /* depth[j] for first .. last: view-space depth of the pixel under each sample (the nearest on the screen), 0 .. far. */
-void tyni_sample_depths(float *depth, const tyni_slices *slices, const tyni_slice *slice, const tyni_view *view,
-                        const tyni_door *door);
+void tyni_sample_depths(float *depth, const tyni_slice *slice, const tyni_view *view, const tyni_door *door);
 
 /* Sets bit j where depth jumps between j and j + 1 by more than `threshold` of the nearer one; clears all others. Returns how
  * many. Samples off the screen are no part of first .. last, so the ends of a line need no breaks. */
@@ -28,8 +27,7 @@ int32_t tyni_sample_breaks(uint32_t *breaks, const float *depth, int32_t first, 
 
 /* Sets the bits of the ray samples: every `step`th, every quarter of that near the epipole, both sides of every break, the
  * first and the last. Returns how many. */
-int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slices *slices, const tyni_slice *slice,
-                         int32_t step);
+int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slice *slice, int32_t step);
 
 /* The next set bit at or after j, at most last; last + 1 if there is none. */
 int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last);

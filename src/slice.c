@@ -3,16 +3,15 @@
 
 #include "base.h"
 
-int32_t tyni_slice_samples(int32_t width, int32_t height, int32_t stride)
+int32_t tyni_slice_points(int32_t pixels, int32_t step)
 {
-    /* sample j is at pixel j * stride; the last must not lie before the last pixel */
-    return (tyni_maxi(width, height) - 1 + stride - 1) / stride + 1;
+    return (pixels - 1 + step - 1) / step + 1;
 }
 
 int32_t tyni_slice_stride(int32_t width, int32_t height, int32_t samples)
 {
     int32_t stride = 1;
-    while (tyni_slice_samples(width, height, stride) > samples)
+    while (tyni_slice_points(tyni_maxi(width, height), stride) > samples)
         stride *= 2;
     return stride;
 }
@@ -63,19 +62,25 @@ static float border_range(tyni_sector *s, const tyni_slices *g, float sign)
     return high - low > 0.01f ? high - low : 0.0f;
 }
 
-void tyni_slice_layout(tyni_slices *g, const tyni_lamp *lamp, int32_t width, int32_t height, int32_t limit, int32_t stride)
+void tyni_slice_epipole(tyni_slices *g, const tyni_lamp *lamp, int32_t width, int32_t height)
 {
-    float length[4], sum = 0.0f, size;
-    int32_t used = 0, spare;
+    float size = tyni_maxf(lamp->ew, tyni_maxf(tyni_absf(lamp->ex), tyni_absf(lamp->ey)) / (float)(width + height));
+    size = size > 0.0f ? 1.0f / size : 0.0f;
     g->width = width;
     g->height = height;
-    g->stride = stride;
-    g->samples = tyni_slice_samples(width, height, stride);
-    size = tyni_maxf(lamp->ew, tyni_maxf(tyni_absf(lamp->ex), tyni_absf(lamp->ey)) / (float)(width + height));
-    size = size > 0.0f ? 1.0f / size : 0.0f;
     g->ex = lamp->ex * size;
     g->ey = lamp->ey * size;
     g->ew = lamp->ew * size;
+}
+
+void tyni_slice_layout(tyni_slices *g, const tyni_lamp *lamp, int32_t width, int32_t height, int32_t limit, int32_t stride)
+{
+    float length[4], sum = 0.0f;
+    int32_t used = 0, spare;
+    g->layout = TYNI_LAYOUT_SHEAR;
+    g->stride = stride;
+    g->samples = tyni_slice_points(tyni_maxi(width, height), stride);
+    tyni_slice_epipole(g, lamp, width, height);
     for (int32_t i = 0; i < 4; i++) {
         tyni_sector *s = &g->sectors[i];
         s->along_y = i >> 1;
@@ -120,9 +125,12 @@ static void trim(tyni_slice *s, const tyni_slices *g, float low, float high)
     s->last = tyni_mini(s->last, tyni_floori(tyni_clampf(b, -1.0f, 65536.0f)));
 }
 
-static void slice_plane(tyni_slice *s, float border, const tyni_lamp *lamp, const tyni_view *view)
+void tyni_slice_plane(tyni_slice *s, float border, const tyni_lamp *lamp, const tyni_view *view)
 {
-    tyni_vec3 side = tyni_vec_mad(s->a, border, s->b);
+    tyni_vec3 side;
+    s->a = tyni_vec_mad(view->origin, s->m0, s->along_y ? view->dx : view->dy);
+    s->b = s->along_y ? tyni_vec_mad(view->dy, s->slope, view->dx) : tyni_vec_mad(view->dx, s->slope, view->dy);
+    side = tyni_vec_mad(s->a, border, s->b);
     s->origin = tyni_vec(0.0f, 0.0f, 0.0f);
     s->ey = lamp->to_light;
     if (view->orthographic && lamp->kind == TYN_LIGHT_DIRECTIONAL) {
@@ -167,9 +175,9 @@ void tyni_slice_line(tyni_slice *s, const tyni_slices *g, const tyni_lamp *lamp,
     mb = sector->first + (float)(index - sector->start) * sector->spacing;
     s->slope = tyni_clampf((across - g->ew * mb) / (along - g->ew * sector->border), -1.001f, 1.001f);
     s->m0 = mb - s->slope * sector->border;
-    s->a = tyni_vec_mad(view->origin, s->m0, s->along_y ? view->dx : view->dy);
-    s->b = s->along_y ? tyni_vec_mad(view->dy, s->slope, view->dx) : tyni_vec_mad(view->dx, s->slope, view->dy);
-    slice_plane(s, sector->border, lamp, view);
+    s->p0 = 0.5f;
+    s->dp = (float)g->stride;
+    tyni_slice_plane(s, sector->border, lamp, view);
     /* the samples: on the screen, on this side of the epipole */
     size = s->along_y ? g->height : g->width;
     s->first = 0;

@@ -78,6 +78,13 @@ static tyn_status check_optional(const tyn_image *image, uint32_t formats, const
     return status;
 }
 
+static tyn_status check_debug(const tyn_config *c, const tyn_frame *f)
+{
+    if ((uint32_t)f->debug > (uint32_t)TYN_DEBUG_TREE || !tyni_finite(f->debug_x) || !tyni_finite(f->debug_y))
+        return TYN_E_DISPLAY;
+    return f->debug == TYN_DEBUG_TREE && c->rays != TYN_RAYS_TREE ? TYN_E_DISPLAY : TYN_OK;
+}
+
 static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
 {
     const tyn_config *c = &context->config;
@@ -108,8 +115,8 @@ static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)
         status = tyni_art_check(f);
     if (status == TYN_OK)
         status = tyni_check_display(&f->display);
-    if (status == TYN_OK && (uint32_t)f->debug > (uint32_t)TYN_DEBUG_OUTSIDE)
-        status = TYN_E_DISPLAY;
+    if (status == TYN_OK)
+        status = check_debug(c, f);
     if (status == TYN_OK)
         status = tyni_jobs_check(f->executor, c->workers);
     return status;

@@ -5,7 +5,7 @@
 
 limit=4096 # bytes, any public call
 # Who calls through a pointer, besides the executor and its jobs: these call the caller's clock.
-pointers='tyn_raster_surface tyn_raster_shadow tyni_frame_render'
+pointers='tyn_raster_surface tyn_raster_shadow tyni_pass_now'
 work=$B/proofs_calls
 gcc=
 for try in "$CC" gcc; do

@@ -308,7 +308,12 @@ static void test_ranges(void)
                   {offsetof(tyn_config, shadow_size), {-1, TYN_MAX_SHADOW + 1, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, steps), {-1, 4097, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, method), {-1, 4, 1000, INT32_MIN}},
-                  {offsetof(tyn_config, rays), {-1, 2, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, rays), {-1, 5, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, gather), {-1, 3, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, kernel), {-1, 3, 1000, INT32_MIN}},
+                  {offsetof(tyn_config, taps), {-1, 2, 6, INT32_MAX}},
+                  {offsetof(tyn_config, downscale), {-1, 3, 16, INT32_MIN}},
+                  {offsetof(tyn_config, budget), {-1, -2, -1000, INT32_MIN}},
                   {offsetof(tyn_config, maps), {-1, TYN_MAX_MAPS + 1, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, lights), {-1, TYN_MAX_LIGHTS + 1, INT32_MAX, INT32_MIN}},
                   {offsetof(tyn_config, workers), {-1, TYN_MAX_WORKERS + 1, INT32_MAX, INT32_MIN}}};

@@ -1,0 +1,148 @@
+/* pass.c - see pass.h */
+#include "pass.h"
+
+#include "arena.h"
+#include "art.h"
+#include "base.h"
+#include "border.h"
+#include "entry.h"
+#include "sample.h"
+#include "walk.h"
+
+size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
+{
+    tyni_arena arena = {NULL, 0, 0};
+    size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples), pitch = (samples + 15) / 16 * 16;
+    size_t steps = tyni_row_room(c->config.shadow_size, c->config.maps), columns = 2 * steps;
+    arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
+    memset(s, 0, sizeof *s);
+    s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
+    s->threshold = tyni_arena_take(&arena, columns, sizeof *s->threshold);
+    s->split = tyni_arena_take(&arena, steps, sizeof *s->split);
+    s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
+    s->value[0] = tyni_arena_take(&arena, 3 * pitch, sizeof *s->value[0]);
+    s->value[1] = s->value[0] ? s->value[0] + pitch : NULL;
+    s->value[2] = s->value[0] ? s->value[1] + pitch : NULL;
+    s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
+    s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
+    s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);
+    s->stats = tyni_arena_take(&arena, 1, TYN_STATS_BYTES);
+    if (c->config.rays == TYN_RAYS_TREE)
+        s->nodes = tyni_arena_take(&arena, tyni_tree_room(columns), sizeof *s->nodes);
+    if (c->config.rays == TYN_RAYS_SWEEP) {
+        s->sweep.order = tyni_arena_take(&arena, columns, sizeof *s->sweep.order);
+        s->sweep.bits = tyni_arena_take(&arena, tyni_sweep_words(columns), sizeof *s->sweep.bits);
+        s->sweep.heads = tyni_arena_take(&arena, samples + 1, sizeof *s->sweep.heads);
+        s->sweep.position = tyni_arena_take(&arena, samples, sizeof *s->sweep.position);
+    }
+    return arena.used;
+}
+
+uint64_t tyni_pass_now(const tyni_pass *p)
+{
+    return p->frame->clock ? p->frame->clock(p->frame->clock_context) : 0;
+}
+
+void tyni_pass_line(const tyni_pass *p, tyni_slice *slice, int32_t index)
+{
+    if (p->slices.layout == TYNI_LAYOUT_BORDER)
+        tyni_border_line(slice, &p->slices, p->lamp, &p->view, index);
+    else
+        tyni_slice_line(slice, &p->slices, p->lamp, &p->view, index);
+}
+
+static int nearest_slice(const tyni_pass *p, float x, float y, int32_t *index)
+{
+    const tyni_sector *sector;
+    int32_t slot[2];
+    float k;
+    if (!p->slices.count)
+        return 0;
+    if (p->slices.layout == TYNI_LAYOUT_BORDER) {
+        if (!tyni_border_find(&p->slices, x, y, slot, &k))
+            return 0;
+        *index = tyni_border_slice(&p->slices, slot[k > 0.5f]);
+        return *index >= 0;
+    }
+    sector = tyni_slice_find(&p->slices, x, y, &k);
+    *index = sector->start + (int32_t)(k + 0.5f);
+    return sector->count > 0;
+}
+
+int tyni_pass_nearest(const tyni_pass *p, float x, float y, int32_t *index, int32_t *sample, float *distance)
+{
+    tyni_slice s;
+    float at, m, end = (float)(p->slices.samples - 1);
+    if (!nearest_slice(p, x, y, index))
+        return 0;
+    tyni_pass_line(p, &s, *index);
+    at = s.along_y ? y : x;
+    m = s.along_y ? x : y;
+    *distance = tyni_absf(m - (s.m0 + s.slope * at)) / sqrtf(1.0f + s.slope * s.slope);
+    /* nearest along the line: move to the foot of the perpendicular */
+    if (p->slices.layout == TYNI_LAYOUT_BORDER)
+        at += s.slope * (m - (s.m0 + s.slope * at)) / (1.0f + s.slope * s.slope);
+    *sample = (int32_t)(tyni_clampf((at - s.p0) / s.dp, 0.0f, end) + 0.5f);
+    return 1;
+}
+
+int tyni_pass_range(const tyni_pass *p, const tyni_sight *v, float s, float *t0, float *t1)
+{
+    *t0 = 0.0f;
+    *t1 = tyni_art_reach(p->frame, s);
+    return s > 0.0f && tyni_view_clip(p->lamp, v, t0, t1);
+}
+
+void tyni_pass_walk(const tyni_pass *p, const tyni_sight *v, float s, float value[3])
+{
+    const tyn_config *config = &p->context->config;
+    float t0, t1, norm[3], light[3] = {0.0f, 0.0f, 0.0f}, all[3];
+    tyni_integral it;
+    value[0] = value[1] = value[2] = 0.0f;
+    if (!tyni_pass_range(p, v, s, &t0, &t1))
+        return;
+    if (config->rays == TYN_RAYS_STEPS) {
+        tyni_walk_steps(p->lamp, &p->medium, v, t0, t1, config->steps, all);
+        for (int32_t i = 0; i < p->count; i++)
+            light[i] = all[p->channels[i]];
+    } else {
+        tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
+        tyni_walk_ray(p->lamp, &it, v, light);
+    }
+    tyni_integral_norm(&p->medium, p->lamp, v, t0, t1, norm);
+    tyni_pass_visible(p, light, norm, value);
+}
+
+void tyni_pass_visible(const tyni_pass *p, const float light[3], const float norm[3], float value[3])
+{
+    for (int32_t i = 0; i < p->count; i++) {
+        float n = norm[p->channels[i]];
+        value[i] = n > 0.0f ? light[i] / n : 0.0f;
+    }
+    if (p->count == 1)
+        value[1] = value[0];
+}
+
+void tyni_pass_clear(const tyni_field *field, int32_t line)
+{
+    memset(field->entries + (ptrdiff_t)line * field->pitch, 0, sizeof *field->entries * (size_t)field->pitch);
+}
+
+void tyni_pass_store(const tyni_pass *p, const tyni_field *field, int32_t line, int32_t first, int32_t last,
+                     const tyni_scratch *s)
+{
+    uint32_t *entries = field->entries + (ptrdiff_t)line * field->pitch;
+    float *scale = field->scales[line], inverse[3], far_inverse = 1.0f / p->view.far_depth;
+    int32_t count = tyni_maxi(p->count, 2);
+    for (int32_t n = 0; n < count; n++) {
+        scale[n] = 0.0f;
+        for (int32_t j = first; j <= last; j++)
+            scale[n] = tyni_maxf(scale[n], s->value[n][j]);
+        inverse[n] = scale[n] > 1e-30f ? 1.0f / scale[n] : 0.0f;
+    }
+    for (int32_t j = first; j <= last; j++)
+        if (s->depth[j] > 0.0f)
+            entries[j] = tyni_entry_pack(s->value[0][j], s->value[1][j], inverse, s->depth[j] * far_inverse);
+    for (int32_t j = first; j <= last && count == 3; j++)
+        field->thirds[(ptrdiff_t)line * field->pitch + j] = tyni_entry_third(s->value[2][j], inverse[2]);
+}

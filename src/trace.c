@@ -1,0 +1,267 @@
+/* trace.c - see trace.h */
+#include "trace.h"
+
+#include "base.h"
+#include "border.h"
+#include "debug.h"
+#include "ray.h"
+#include "sample.h"
+#include "walk.h"
+
+/* ---- slices -------------------------------------------------------------------------------------------------------- */
+
+void tyni_trace_layout(tyni_pass *p)
+{
+    const tyn_config *c = &p->context->config;
+    int32_t width = p->view.width, height = p->view.height, samples = p->context->samples;
+    if (c->gather == TYN_GATHER_SHEAR) {
+        tyni_slice_layout(&p->slices, p->lamp, width, height, c->slices, tyni_slice_stride(width, height, samples));
+        return;
+    }
+    p->slices.spokes = p->context->spokes;
+    p->slices.slots = p->context->slots;
+    tyni_border_layout(&p->slices, p->lamp, width, height, c->slices, samples, c->gather == TYN_GATHER_IVB);
+}
+
+/* Where light ends before the surface, depth does: at the far side of a spot's cone (or its slide's light), or at the frame's
+ * max_distance. Clamps to it, so that breaks behind the beam cost nothing, and marks samples beside the beam by depth 0.
+ * Returns how many are in it. */
+static int32_t clamp_to_volume(const tyni_pass *p, const tyni_slice *slice, float *depth)
+{
+    int32_t inside = 0;
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        tyni_sight v;
+        float length = tyni_slice_sight(slice, &p->view, tyni_slice_p(slice, j), &v), t0, t1;
+        depth[j] = tyni_pass_range(p, &v, depth[j] * length, &t0, &t1) ? t1 / length : 0.0f;
+        inside += depth[j] > 0.0f;
+    }
+    return inside;
+}
+
+/* How far from the axis origin - light the rays of a line get. */
+static float reach_of(const tyni_pass *p, const tyni_slice *slice, const float *depth)
+{
+    float reach = 0.0f;
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        tyni_sight v;
+        float t = depth[j] * tyni_slice_sight(slice, &p->view, tyni_slice_p(slice, j), &v);
+        reach = tyni_maxf(reach, tyni_vec_dot(tyni_vec_sub(tyni_sight_at(&v, t), slice->origin), slice->ex));
+    }
+    return reach;
+}
+
+/* One ray against the row; a walk over the map where its columns are too coarse. */
+static void row_value(const tyni_pass *p, const tyni_finder *finder, const tyni_sight *v, float s, float at, tyn_stats *stats,
+                      float value[3])
+{
+    float t0, t1, norm[3], light[3] = {0.0f, 0.0f, 0.0f};
+    tyni_integral it;
+    value[0] = value[1] = value[2] = 0.0f;
+    if (!tyni_pass_range(p, v, s, &t0, &t1))
+        return;
+    tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
+    if (tyni_ray_coarse(finder->row, &it, v)) {
+        tyni_walk_ray(p->lamp, &it, v, light);
+        stats->walks++;
+    } else {
+        stats->looked += tyni_ray_row(finder, at, p->lamp, &it, v, light);
+    }
+    tyni_integral_norm(&p->medium, p->lamp, v, t0, t1, norm);
+    tyni_pass_visible(p, light, norm, value);
+}
+
+/* The rays of the set bits. */
+static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
+                     tyni_scratch *s)
+{
+    for (int32_t j = tyni_sample_next(rays, slice->first, slice->last); j <= slice->last;
+         j = tyni_sample_next(rays, j + 1, slice->last)) {
+        float at = tyni_slice_p(slice, j), length, value[3];
+        tyni_sight v;
+        length = tyni_slice_sight(slice, &p->view, at, &v);
+        if (finder->rays == TYN_RAYS_SWEEP)
+            tyni_sweep_to(&s->sweep, j);
+        if (finder->rays == TYN_RAYS_STEPS)
+            tyni_pass_walk(p, &v, s->depth[j] * length, value);
+        else
+            row_value(p, finder, &v, s->depth[j] * length, at, s->stats, value);
+        s->stats->rays++;
+        s->value[0][j] = value[0];
+        s->value[1][j] = value[1];
+        s->value[2][j] = value[2];
+    }
+}
+
+/* The row and what the finder needs of it. */
+static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch *s, tyni_finder *finder, tyni_tree *tree)
+{
+    const tyn_config *config = &p->context->config;
+    finder->row = s->row;
+    finder->rays = config->rays;
+    finder->tree = tree;
+    finder->sweep = &s->sweep;
+    if (config->rays == TYN_RAYS_STEPS)
+        return;
+    tyni_row_build(s->row, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice, p->lamp, &p->view,
+                   reach_of(p, slice, s->depth));
+    s->stats->columns += s->row->columns;
+    if (config->rays == TYN_RAYS_TREE)
+        tyni_tree_build(tree, s->nodes, s->row);
+    if (config->rays == TYN_RAYS_SWEEP)
+        tyni_sweep_begin(&s->sweep, s->row, slice);
+}
+
+static void interpolate(const tyni_pass *p, const tyni_slice *slice, const tyni_scratch *s)
+{
+    for (int32_t n = 0; n < tyni_maxi(p->count, 2); n++)
+        tyni_sample_interpolate(s->value[n], s->rays, slice->first, slice->last);
+}
+
+/* Depth, breaks, initial rays; 0 if there is nothing to do. */
+static int32_t sample_line(const tyni_pass *p, tyni_slice *slice, int32_t index, tyni_scratch *s)
+{
+    const tyn_config *config = &p->context->config;
+    tyni_pass_line(p, slice, index);
+    if (slice->first > slice->last)
+        return 0;
+    tyni_sample_depths(s->depth, slice, &p->view, &p->depth);
+    if ((tyni_view_bounded(p->lamp) || p->frame->max_distance > 0.0f) && !clamp_to_volume(p, slice, s->depth))
+        return 0;
+    s->stats->samples += slice->last - slice->first + 1;
+    s->stats->breaks += tyni_sample_breaks(s->breaks, s->depth, slice->first, slice->last, config->break_threshold);
+    return tyni_sample_rays(s->rays, s->breaks, slice, config->initial_step);
+}
+
+int tyni_trace_row(const tyni_pass *p, int32_t index, tyni_slice *slice, tyni_scratch *s, tyni_finder *finder, tyni_tree *tree)
+{
+    if (p->context->config.rays == TYN_RAYS_STEPS || !sample_line(p, slice, index, s))
+        return 0;
+    build_row(p, slice, s, finder, tree);
+    return 1;
+}
+
+void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
+{
+    const tyni_pass *p = argument;
+    const tyn_config *config = &p->context->config;
+    uint64_t time[5];
+    tyni_scratch s;
+    tyni_slice slice;
+    tyni_finder finder;
+    tyni_tree tree;
+    int32_t initial;
+    tyni_pass_scratch(p->context, worker, &s);
+    time[0] = tyni_pass_now(p);
+    tyni_pass_clear(&p->lines, index);
+    initial = sample_line(p, &slice, index, &s);
+    time[1] = tyni_pass_now(p);
+    s.stats->sample_ns += time[1] - time[0];
+    if (!initial) {
+        s.stats->culled++;
+        return;
+    }
+    s.stats->slices++;
+    s.stats->initial += initial;
+    build_row(p, &slice, &s, &finder, &tree);
+    time[2] = tyni_pass_now(p);
+    if (tyni_debug_marks(p->frame->debug))
+        tyni_debug_mark_initial(p, index, &slice, s.rays, s.breaks);
+    run_rays(p, &slice, &finder, s.rays, &s);
+    while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2), slice.first, slice.last,
+                              config->tolerance))
+        run_rays(p, &slice, &finder, s.fresh, &s);
+    time[3] = tyni_pass_now(p);
+    if (tyni_debug_marks(p->frame->debug)) {
+        tyni_debug_mark_sources(p, index, &slice, s.rays);
+    } else {
+        interpolate(p, &slice, &s);
+        tyni_pass_store(p, &p->lines, index, slice.first, slice.last, &s);
+    }
+    time[4] = tyni_pass_now(p);
+    s.stats->row_ns += time[2] - time[1];
+    s.stats->ray_ns += time[3] - time[2];
+    s.stats->line_ns += time[4] - time[3];
+}
+
+/* ---- grids --------------------------------------------------------------------------------------------------------- */
+
+/* Points 0 .. count - 1 from the first pixel's centre to the last's. */
+static float even(int32_t pixels, int32_t count)
+{
+    return count > 1 ? (float)(pixels - 1) / (float)(count - 1) : 0.0f;
+}
+
+void tyni_trace_spread(tyni_pass *p)
+{
+    const tyn_config *c = &p->context->config;
+    int32_t width = p->view.width, height = p->view.height, most = tyni_mini(width, p->context->samples);
+    float rays = c->budget ? (float)c->budget : (float)c->slices * ((float)p->context->samples / (float)c->initial_step + 1.0f);
+    float columns;
+    rays = tyni_minf(tyni_minf(rays, (float)width * (float)height), (float)c->slices * (float)p->context->samples);
+    columns = sqrtf(rays * (float)width / (float)height);
+    p->grid.field = p->lines;
+    p->grid.columns = tyni_clampi((int32_t)(columns + 0.5f), tyni_mini(width, 2), most);
+    p->grid.rows = tyni_clampi((int32_t)(rays / (float)p->grid.columns + 0.5f), 1, tyni_mini(height, c->slices));
+    p->grid.step_x = even(width, p->grid.columns);
+    p->grid.step_y = even(height, p->grid.rows);
+    p->naive = 1;
+}
+
+void tyni_trace_coarse(tyni_pass *p)
+{
+    int32_t f = p->context->config.downscale;
+    p->grid.field = p->context->grid;
+    p->grid.field.threshold = p->lines.threshold;
+    p->grid.columns = tyni_slice_points(p->view.width, f);
+    p->grid.rows = tyni_slice_points(p->view.height, f);
+    p->grid.step_x = p->grid.step_y = (float)f;
+}
+
+/* One point: from the slices, or by a ray. Returns its depth, or that of the end of the light's volume before it. */
+static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stats, uint64_t *correct_ns, float value[3])
+{
+    int32_t x = tyni_mini((int32_t)px, p->view.width - 1), y = tyni_mini((int32_t)py, p->view.height - 1);
+    float length, depth = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y)), t0, t1;
+    uint64_t start;
+    tyni_sight v;
+    length = tyni_view_sight(&p->view, px, py, &v);
+    value[0] = value[1] = value[2] = 0.0f;
+    if (!tyni_pass_range(p, &v, depth * length, &t0, &t1)) {
+        stats->rays += p->method != TYN_METHOD_EPIPOLAR;
+        return 0.0f;
+    }
+    if (p->method != TYN_METHOD_EPIPOLAR) {
+        tyni_pass_walk(p, &v, depth * length, value);
+        stats->rays++;
+    } else if (!tyni_gather_lines(&p->gather, &p->lines, &p->slices, px, py, t1 / (length * p->view.far_depth), value)) {
+        start = tyni_pass_now(p);
+        tyni_pass_walk(p, &v, depth * length, value);
+        *correct_ns += tyni_pass_now(p) - start;
+        stats->rejected++;
+    }
+    return t1 / length;
+}
+
+void tyni_trace_grid(void *argument, int32_t index, int32_t worker)
+{
+    const tyni_pass *p = argument;
+    const tyni_grid *g = &p->grid;
+    uint64_t start, correct_ns = 0, *stage;
+    tyni_scratch s;
+    tyni_pass_scratch(p->context, worker, &s);
+    start = tyni_pass_now(p);
+    tyni_pass_clear(&g->field, index);
+    for (int32_t i = 0; i < g->columns; i++) {
+        float value[3];
+        s.depth[i] = point_value(p, (float)i * g->step_x + 0.5f, (float)index * g->step_y + 0.5f, s.stats, &correct_ns, value);
+        s.value[0][i] = value[0];
+        s.value[1][i] = value[1];
+        s.value[2][i] = value[2];
+    }
+    if (p->method != TYN_METHOD_EPIPOLAR)
+        s.stats->samples += g->columns;
+    tyni_pass_store(p, &g->field, index, 0, g->columns - 1, &s);
+    stage = p->method == TYN_METHOD_EPIPOLAR ? &s.stats->unwarp_ns : &s.stats->ray_ns;
+    *stage += tyni_pass_now(p) - start - correct_ns;
+    s.stats->correct_ns += correct_ns;
+}

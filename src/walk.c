@@ -1,0 +1,237 @@
+/* walk.c - see walk.h */
+#include "walk.h"
+
+#include "base.h"
+#include "line.h"
+#include "meter.h"
+#include "num.h"
+
+/* A ray on the map: a straight tyni_line of texels from (u, v) to (u + du, v + dv), with the parameter s from 0 to 1. Map depth
+ * is linear in s, t is projective. */
+typedef struct track {
+    float u, v, du, dv, z, dz;
+    float t[2], w[2];
+} track;
+
+/* Narrows t to the part of the ray that falls on the map; 0 if none does. */
+static int on_map(const tyni_map *map, const tyni_sight *v, float t[2])
+{
+    tyni_line u = tyni_line_along(&map->u, v), y = tyni_line_along(&map->v, v), w = tyni_line_along(&map->w, v), edge;
+    float width = (float)map->texels.width, height = (float)map->texels.height;
+    edge.c = w.c - 1e-6f;
+    edge.d = w.d;
+    tyni_line_clip(edge, t);
+    tyni_line_clip(u, t);
+    tyni_line_clip(y, t);
+    edge.c = width * w.c - u.c;
+    edge.d = width * w.d - u.d;
+    tyni_line_clip(edge, t);
+    edge.c = height * w.c - y.c;
+    edge.d = height * w.d - y.d;
+    tyni_line_clip(edge, t);
+    return t[0] < t[1];
+}
+
+static int track_begin(track *k, const tyni_map *map, const tyni_sight *v, const float part[2])
+{
+    tyni_line lu = tyni_line_along(&map->u, v), lv = tyni_line_along(&map->v, v);
+    tyni_line lz = tyni_line_along(&map->z, v), lw = tyni_line_along(&map->w, v);
+    float width = (float)map->texels.width, height = (float)map->texels.height, u[2], y[2], z[2];
+    k->t[0] = part[0];
+    k->t[1] = part[1];
+    if (!on_map(map, v, k->t))
+        return 0;
+    for (int32_t i = 0; i < 2; i++) {
+        float w = tyni_maxf(tyni_line_at(lw, k->t[i]), 1e-9f);
+        k->w[i] = w;
+        u[i] = tyni_clampf(tyni_line_at(lu, k->t[i]) / w, 0.0f, width);
+        y[i] = tyni_clampf(tyni_line_at(lv, k->t[i]) / w, 0.0f, height);
+        z[i] = tyni_line_at(lz, k->t[i]) / w;
+    }
+    k->u = u[0];
+    k->v = y[0];
+    k->z = z[0];
+    k->du = u[1] - u[0];
+    k->dv = y[1] - y[0];
+    k->dz = z[1] - z[0];
+    return 1;
+}
+
+static float track_t(const track *k, float s)
+{
+    float a = (1.0f - s) * k->w[1], b = s * k->w[0];
+    return (a * k->t[0] + b * k->t[1]) / (a + b);
+}
+
+/* One axis of the walk: the texel, where in s the next border is, and how far apart borders are. */
+typedef struct axis {
+    int32_t texel, step;
+    float next, pitch;
+} axis;
+
+static axis axis_begin(float x, float dx, int32_t size)
+{
+    axis a;
+    a.texel = tyni_clampi((int32_t)x, 0, size - 1);
+    a.step = dx >= 0.0f ? 1 : -1;
+    if (tyni_absf(dx) > 1e-6f) {
+        a.pitch = 1.0f / tyni_absf(dx);
+        a.next = tyni_maxf((dx >= 0.0f ? (float)a.texel + 1.0f - x : x - (float)a.texel) * a.pitch, 0.0f);
+    } else {
+        a.pitch = 2.0f;
+        a.next = 2.0f;
+    }
+    return a;
+}
+
+static void walk_texels(const tyni_map *map, const track *k, tyni_meter *m)
+{
+    const tyni_texels *texels = &map->texels;
+    axis u = axis_begin(k->u, k->du, texels->width), v = axis_begin(k->v, k->dv, texels->height);
+    float s = 0.0f, za = k->z;
+    /* every step leaves a texel for good: at most both sides of them, whatever rounding does */
+    for (int32_t left = texels->width + texels->height + 2; left > 0; left--) {
+        float depth = tyni_texels_at(texels, u.texel, v.texel);
+        float end = tyni_minf(tyni_minf(u.next, v.next), 1.0f), zb = k->z + end * k->dz;
+        int open = !(depth > 0.0f), lit_a, lit_b;
+        lit_a = open || za >= depth;
+        lit_b = open || zb >= depth;
+        if ((lit_a != m->outside) != m->on)
+            tyni_meter_lit(m, lit_a, track_t(k, s));
+        if (lit_b != lit_a)
+            tyni_meter_lit(m, lit_b, track_t(k, s + (end - s) * ((depth - za) / (zb - za))));
+        if (end >= 1.0f)
+            return;
+        if (u.next <= v.next) {
+            u.texel += u.step;
+            u.next += u.pitch;
+        } else {
+            v.texel += v.step;
+            v.next += v.pitch;
+        }
+        if ((uint32_t)u.texel >= (uint32_t)texels->width || (uint32_t)v.texel >= (uint32_t)texels->height)
+            return;
+        s = end;
+        za = zb;
+    }
+}
+
+void tyni_walk_ray(const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, float *light)
+{
+    /* parts of the ray that no map has covered yet */
+    float part[TYN_MAX_MAPS + 1][2];
+    int32_t parts = 1;
+    tyni_meter m;
+    track k;
+    tyni_meter_begin(&m, it, lamp, v, light);
+    if (!(it->t0 < it->t1))
+        return;
+    part[0][0] = it->t0;
+    part[0][1] = it->t1;
+    for (int32_t i = 0; i < lamp->map_count; i++)
+        for (int32_t n = parts - 1; n >= 0; n--) {
+            float end = part[n][1];
+            if (!(part[n][0] < end) || !track_begin(&k, &lamp->maps[i], v, part[n]))
+                continue;
+            walk_texels(&lamp->maps[i], &k, &m);
+            tyni_meter_lit(&m, lamp->outside, k.t[1]);
+            part[n][1] = k.t[0];
+            if (k.t[1] < end && parts <= TYN_MAX_MAPS) {
+                part[parts][0] = k.t[1];
+                part[parts++][1] = end;
+            }
+        }
+    tyni_meter_end(&m);
+}
+
+static int point_lit(const tyni_lamp *lamp, const tyni_sight *v, float t)
+{
+    for (int32_t i = 0; i < lamp->map_count; i++) {
+        const tyni_map *map = &lamp->maps[i];
+        float w = tyni_line_at(tyni_line_along(&map->w, v), t), depth, x, y;
+        if (!(w > 0.0f))
+            continue;
+        x = tyni_line_at(tyni_line_along(&map->u, v), t) / w;
+        y = tyni_line_at(tyni_line_along(&map->v, v), t) / w;
+        if (!(x >= 0.0f && y >= 0.0f && x < (float)map->texels.width && y < (float)map->texels.height))
+            continue;
+        depth = tyni_texels_at(&map->texels, (int32_t)x, (int32_t)y);
+        return !(depth > 0.0f) || tyni_line_at(tyni_line_along(&map->z, v), t) / w >= depth;
+    }
+    return lamp->outside;
+}
+
+/* ED10 marches inside the light's frustum alone. Narrows t to what the maps cover, from the first to the last, and adds the
+ * light before and after it in closed form, where there is one. */
+static void inside_frustum(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t[2], float light[3])
+{
+    float from = t[1], to = t[0], part[2];
+    if (lamp->coloured || lamp->lift != 0.0f || (lamp->outside && lamp->kind != TYN_LIGHT_DIRECTIONAL))
+        return;
+    for (int32_t i = 0; i < lamp->map_count; i++) {
+        part[0] = t[0];
+        part[1] = t[1];
+        if (!on_map(&lamp->maps[i], v, part))
+            continue;
+        from = tyni_minf(from, part[0]);
+        to = tyni_maxf(to, part[1]);
+    }
+    from = tyni_minf(from, to); /* no map at all: everything is after it */
+    if (lamp->outside)
+        for (int32_t c = 0; c < 3; c++) {
+            float s = medium->sigma[c];
+            light[c] = from * tyni_num_fog(s * from) - t[0] * tyni_num_fog(s * t[0]);
+            light[c] += t[1] * tyni_num_fog(s * t[1]) - to * tyni_num_fog(s * to);
+        }
+    t[0] = from;
+    t[1] = to;
+}
+
+void tyni_walk_steps(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1, int32_t steps,
+                     float light[3])
+{
+    float part[2], dt, density[3], rgb[3] = {1.0f, 1.0f, 1.0f}, dark[3] = {0.0f, 0.0f, 0.0f};
+    light[0] = light[1] = light[2] = 0.0f;
+    part[0] = t0;
+    part[1] = t1;
+    if (!(t0 < t1))
+        return;
+    inside_frustum(lamp, medium, v, part, light);
+    dt = (part[1] - part[0]) / (float)steps;
+    for (int32_t i = 0; i < steps && dt > 0.0f; i++) {
+        float t = part[0] + ((float)i + 0.5f) * dt;
+        int lit = point_lit(lamp, v, t);
+        if (!lit && lamp->lift == 0.0f)
+            continue;
+        tyni_integral_density(medium, lamp, v, t, density);
+        if (lamp->coloured)
+            tyni_view_colour(lamp, tyni_sight_at(v, t), rgb);
+        for (int32_t c = 0; c < 3; c++)
+            *(lit ? &light[c] : &dark[c]) += density[c] * dt * rgb[c];
+    }
+    for (int32_t c = 0; c < 3; c++)
+        light[c] = tyni_maxf(light[c] + lamp->lift * dark[c], 0.0f);
+}
+
+void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, int32_t steps,
+                     float light[3])
+{
+    static const int32_t channels[3] = {0, 1, 2};
+    float t0 = 0.0f, t1 = s, mix[3];
+    tyni_integral it;
+    light[0] = light[1] = light[2] = 0.0f;
+    if (!tyni_view_clip(lamp, v, &t0, &t1))
+        return;
+    if (steps) {
+        tyni_walk_steps(lamp, medium, v, t0, t1, steps, light);
+    } else {
+        tyni_integral_begin(&it, medium, lamp, v, t0, t1, channels, 3);
+        tyni_walk_ray(lamp, &it, v, light);
+    }
+    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
+        tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v->d, lamp->to_light), -1.0f, 1.0f), mix);
+    else
+        mix[0] = mix[1] = mix[2] = 1.0f;
+    for (int32_t c = 0; c < 3; c++)
+        light[c] *= mix[c] * lamp->colour[c];
+}
