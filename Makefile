@@ -19,9 +19,9 @@ VERSION := $(shell sed -n 's/^.define TYN_VERSION "\(.*\)"/\1/p' include/tyndall
 
 LIB_SRC := $(wildcard src/*.c src/*/*.c)
 PORT_SRC := $(wildcard ports/posix/*.c)
-TEST_SRC := $(filter-out tests/bench.c tests/fuzz_%.c,$(wildcard tests/*.c))
+TEST_SRC := $(filter-out tests/fuzz_%.c,$(wildcard tests/*.c))
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
-C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch])
+C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
 .PHONY: all run test check-all bench golden install uninstall single format format-check clean help FORCE
 .DELETE_ON_ERROR:
@@ -32,14 +32,15 @@ all: $(B)/libtyndall.a $(B)/tyndall
 run: all
 	$(B)/tyndall showcase $(B)
 
-test: all $(B)/tests $(B)/bench
+test: all $(B)/tests $(B)/bench $(B)/bench-papers
 	@B=$(B) CC="$(CC)" CFLAGS="$(CFLAGS)" MAKE="$(MAKE)" sh tests/run.sh
 
 check-all:
 	@MAKE="$(MAKE)" sh tests/check-all.sh
 
-bench: $(B)/bench
+bench: $(B)/bench $(B)/bench-papers
 	$(B)/bench
+	$(B)/bench-papers
 
 # Rewrites tests/golden.txt and puts the pictures where one can look at them.
 golden: $(B)/tests
@@ -65,7 +66,11 @@ $(B)/tyndall: $(call OBJ,$(PORT_SRC)) $(B)/libtyndall.a
 $(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
-$(B)/bench: $(call OBJ,tests/bench.c) $(B)/libport.a $(B)/libtyndall.a
+# One program each, on what stage.c has.
+$(B)/bench: $(call OBJ,tests/bench/bench.c tests/bench/stage.c) $(B)/libport.a $(B)/libtyndall.a
+	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+
+$(B)/bench-papers: $(call OBJ,tests/bench/papers.c tests/bench/stage.c) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
 $(B)/obj/src/%.o: src/%.c $(B)/flags
@@ -87,7 +92,7 @@ $(B)/flags: FORCE
 $(B)/sources: FORCE
 	@mkdir -p $(B); echo '$(LIB_SRC) $(PORT_SRC) $(TEST_SRC)' | cmp -s - $@ || echo '$(LIB_SRC) $(PORT_SRC) $(TEST_SRC)' >$@
 
--include $(patsubst %.o,%.d,$(call OBJ,$(LIB_SRC) $(PORT_SRC) $(TEST_SRC) tests/bench.c))
+-include $(patsubst %.o,%.d,$(call OBJ,$(LIB_SRC) $(PORT_SRC) $(TEST_SRC) $(wildcard tests/bench/*.c)))
 
 # ---- deliver -------------------------------------------------------------------------------------------------------------
 

@@ -82,7 +82,6 @@ static void draw_tree(chart *c, const tyni_row *row, const tyni_tree *tree, uint
     for (int32_t l = TYNI_TREE_FIRST; l <= tree->levels; l++) {
         c->top = top + (l - TYNI_TREE_FIRST) * height / bands + 1;
         c->height = tyni_maxi(height / bands - 2, 1);
-        fill(c, 0, c->image->width, c->top, c->top + c->height, black);
         for (int32_t k = 0; k << l < row->columns; k++)
             draw_node(c, tree, l, k, slate);
     }
@@ -120,7 +119,9 @@ void tyni_chart_draw(const tyni_pass *p)
         return;
     sample = tyni_clampi(sample, slice.first, slice.last);
     c.columns = s.row->columns;
-    c.height = p->frame->debug == TYN_DEBUG_TREE ? (height + 1) / 2 : height;
+    c.height = height;
+    fill(&c, 0, c.image->width, 0, height, black);
+    c.height = p->frame->debug == TYN_DEBUG_TREE ? (height + 2) / 3 : height;
     draw_row(&c, s.row);
     at = tyni_slice_p(&slice, sample);
     position = tyni_row_position(s.row, at);
@@ -135,7 +136,7 @@ void tyni_chart_draw(const tyni_pass *p)
         first += piece->first;
         last += piece->first;
         c.top = 0;
-        c.height = p->frame->debug == TYN_DEBUG_TREE ? (height + 1) / 2 : height;
+        c.height = p->frame->debug == TYN_DEBUG_TREE ? (height + 2) / 3 : height;
         draw_ray(&c, s.row, position, first, last);
         if (p->frame->debug == TYN_DEBUG_TREE)
             draw_tree(&c, s.row, &tree, position, first, last, c.height, height - c.height);

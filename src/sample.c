@@ -54,7 +54,7 @@ int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slic
         set(rays, j);
     /* near the epipole light varies faster: IVB section 6.2. Four initial steps on either side of it. */
     dense = tyni_maxi(step / 4, 1);
-    from = (int32_t)tyni_clampf((tyni_clampf(slice->epipole, -1e6f, 1e6f) - slice->p0 + 0.5f) / slice->dp, -1e6f, 1e6f);
+    from = (int32_t)tyni_clampf((tyni_clampf(slice->epipole, -1e6f, 1e6f) - slice->p0) / slice->dp + 0.5f, -1e6f, 1e6f);
     to = tyni_mini(from + 4 * step, slice->last);
     from = tyni_maxi(from - 4 * step, slice->first);
     for (int32_t j = (from + dense - 1) / dense * dense; j <= to; j += dense)

@@ -8,12 +8,13 @@
 
 #include "stock.h"
 
-const rig_way rig_ways[RIG_WAYS] = {{TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS},
-                                    {TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS},
-                                    {TYN_METHOD_MARCH, TYN_RAYS_WORDS},
-                                    {TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS},
-                                    {TYN_METHOD_NONE, TYN_RAYS_WORDS}};
-
+const rig_way rig_ways[RIG_WAYS] = {{"slices", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1},
+                                    {"slices in steps", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, TYN_GATHER_SHEAR, 1},
+                                    {"march", TYN_METHOD_MARCH, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1},
+                                    {"subsample", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1},
+                                    {"IVB, half size", TYN_METHOD_EPIPOLAR, TYN_RAYS_TREE, TYN_GATHER_IVB, 2},
+                                    {"ED10", TYN_METHOD_EPIPOLAR, TYN_RAYS_SWEEP, TYN_GATHER_ED10, 1},
+                                    {"none", TYN_METHOD_NONE, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1}};
 void *rig_block(size_t bytes)
 {
     void *block = NULL;
@@ -252,6 +253,14 @@ tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays)
     rig_fill(r, &config);
     config.method = method;
     config.rays = rays;
+    return config;
+}
+
+tyn_config rig_way_config(const rig *r, const rig_way *way)
+{
+    tyn_config config = rig_config(r, way->method, way->rays);
+    config.gather = way->gather;
+    config.downscale = way->downscale;
     return config;
 }
 

@@ -30,12 +30,15 @@ void rig_free(rig *r);
 /* A rig of a stock model; ends the tests where there is none. */
 rig *rig_stock(const char *name, int width, int height, int32_t shadow_size);
 
-/* Every method, and both kinds of rays, for tests that hold for all. */
+/* Every method, ways of rays, lines and reconstruction, for tests that hold for all. The last has no scattered light. */
 typedef struct rig_way {
+    const char *name;
     tyn_method method;
     tyn_rays rays;
+    tyn_gather gather;
+    int32_t downscale;
 } rig_way;
-enum { RIG_WAYS = 5 };
+enum { RIG_WAYS = 7 };
 extern const rig_way rig_ways[RIG_WAYS];
 
 /* What a config must have room for: shadow size, lights, maps of a light, textures. */
@@ -43,6 +46,8 @@ void rig_fill(const rig *r, tyn_config *config);
 
 /* A config of the rig's size and lights with the method; the rest is left 0. */
 tyn_config rig_config(const rig *r, tyn_method method, tyn_rays rays);
+
+tyn_config rig_way_config(const rig *r, const rig_way *way);
 
 /* A frame that reads and writes the rig's buffers; exposure 1, film. */
 tyn_frame rig_frame(rig *r);

@@ -257,7 +257,19 @@ static size_t memory_of(const tyn_config *c)
     size_t width = (size_t)c->width, height = (size_t)c->height, slices = (size_t)c->slices, samples = (size_t)c->samples;
     size_t shadow = (size_t)c->shadow_size, lights = (size_t)c->lights, workers = (size_t)c->workers;
     size_t maps = (size_t)c->maps;
-    return TYN_MEMORY_FULL(width, height, slices, samples, shadow, lights, workers, maps, c->textured);
+    size_t sum, factor = (size_t)(c->downscale ? c->downscale : 1);
+    if (factor > 1 && samples < TYNI_POINTS(TYNI_LONGER(width, height), factor))
+        samples = TYNI_POINTS(TYNI_LONGER(width, height), factor);
+    sum = TYN_MEMORY_FULL(width, height, slices, samples, shadow, lights, workers, maps, c->textured);
+    if (c->rays == TYN_RAYS_TREE)
+        sum += TYN_MEMORY_TREE(shadow, maps, workers);
+    if (c->rays == TYN_RAYS_SWEEP)
+        sum += TYN_MEMORY_SWEEP(width, height, samples, shadow, maps, workers);
+    if (c->gather != TYN_GATHER_SHEAR)
+        sum += TYN_MEMORY_BORDER(slices);
+    if (factor > 1)
+        sum += TYN_MEMORY_DOWNSCALE(width, height, factor, c->textured);
+    return sum;
 }
 
 static void test_preset(void)
@@ -286,6 +298,14 @@ static void test_preset(void)
             config.maps = 6;
             config.textured = 1;
             CHECK(tyn_measure(&config, &bytes) == TYN_OK && memory_of(&config) == bytes);
+            for (int way = 0; way < 5 * 3 * 4; way++) {
+                config.rays = (tyn_rays)(way % 5);
+                config.gather = (tyn_gather)(way / 5 % 3);
+                config.downscale = 1 << way / 15;
+                config.samples = way & 1 ? config.samples : 2;
+                config.textured = way & 1;
+                CHECK(tyn_measure(&config, &bytes) == TYN_OK && memory_of(&config) == bytes);
+            }
         }
     }
     CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, 1920, 1080) == TYN_OK);

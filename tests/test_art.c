@@ -120,7 +120,6 @@ static void compare(const char *light, const char *control, const char *way, con
 
 static void one(rig *r, const char *name, const art *a, int textured)
 {
-    static const char *const ways[RIG_WAYS] = {"slices", "slices in steps", "march", "subsample", "none"};
     static tyn_query_point point[PIXELS];
     static tyn_query_result result[PIXELS];
     static float target[COUNT], share[COUNT];
@@ -131,7 +130,7 @@ static void one(rig *r, const char *name, const art *a, int textured)
     frame.target.format = TYN_RGB_F32;
     put(a, &frame, &light);
     for (int way = 0; way < RIG_WAYS; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         int march = config.method == TYN_METHOD_MARCH;
         if (textured && config.method != TYN_METHOD_EPIPOLAR && !march)
             continue;
@@ -144,7 +143,7 @@ static void one(rig *r, const char *name, const art *a, int textured)
         }
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
         /* refinement sees other values, and depth ends elsewhere: only a ray for each pixel is the same to rounding */
-        compare(name, a->name, ways[way], r->scatter, march ? 1e-5 : a->contrast > 1 ? 0.04 : 0.015);
+        compare(name, a->name, rig_ways[way].name, r->scatter, march ? 1e-5 : a->contrast > 1 ? 0.04 : 0.015);
         for (int i = 0; i < COUNT; i++) /* the picture */
             CHECK_NEAR(target[i], left[i] * (double)r->colour[i] + (double)r->scatter[i], 1e-5 * (1 + (double)target[i]));
         if (!march)
@@ -187,7 +186,7 @@ static void test_neutral(void)
     for (int n = 0; n < NAMES; n++)
         for (int way = 0; way < RIG_WAYS; way++) {
             rig *r = rig_stock(names[n], W, H, 128);
-            tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
             CHECK(rig_render(r, &config, &frame) == TYN_OK);
             memcpy(scatter, r->scatter, sizeof scatter);
@@ -208,7 +207,7 @@ static void test_lights(void)
     rig *r = rig_stock("sun ahead", W, H, 128), *other = rig_stock("lamp off the left", W, H, 128);
     TEST("art controls: each light by itself");
     for (int way = 0; way < RIG_WAYS - 1; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         tyn_light light[2];
         int64_t rays;

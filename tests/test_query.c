@@ -42,7 +42,7 @@ static void against_pictures(rig *r, const tyn_frame *frame, int textured, const
     for (int i = 0; i < PIXELS; i++)
         memcpy(queried + 3 * i, result[i].scatter, sizeof result[i].scatter);
     for (int way = 0; way < 3; way += 2) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         double gap, worst = 0, most = 0;
         config.textured = textured;
         CHECK(rig_render(r, &config, frame) == TYN_OK);

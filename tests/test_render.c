@@ -177,7 +177,7 @@ static void test_sizes(void)
         rig *r = rig_stock(i % 2 ? "lamp in view" : "sun ahead", w, h, 64);
         for (int way = 0; way < RIG_WAYS; way++)
             for (int upside_down = 0; upside_down < 2; upside_down++) {
-                tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+                tyn_config config = rig_way_config(r, &rig_ways[way]);
                 tyn_frame frame = rig_frame(r);
                 guard target = guard_new(w, h, TYN_RGBA8_SRGB, upside_down),
                       scatter = guard_new(w, h, TYN_RGB_F32, !upside_down);
@@ -219,7 +219,7 @@ static void test_formats(void)
     rig *r = rig_stock("sun off the left", W, H, 128);
     TEST("tyn_render: every target format");
     for (int way = 0; way < RIG_WAYS; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         frame.target.pixels = linear;
         frame.target.format = TYN_RGB_F32;
@@ -253,7 +253,7 @@ static void test_in_place(void)
     TEST("tyn_render: in place");
     for (int f = 0; f < 4; f++)
         for (int way = 0; way < RIG_WAYS; way++) {
-            tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
             guard colour = guard_new(W, H, formats[f], way & 1), target = guard_new(W, H, formats[f], way & 1);
             tyn_image from = {r->colour, W, H, 0, TYN_RGB_F32};
@@ -327,7 +327,7 @@ static void test_unshadowed(void)
     scene->polygons = 0; /* the depth below stays the rig's */
     CHECK(r && oracle_prepare(scene));
     for (int way = 0; r && way < RIG_WAYS; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         double gap = 0, sum = 0;
         r->light[0].shadow.depth = NULL;
@@ -379,7 +379,7 @@ static void test_odd_depth(void)
             odd[i] = same[i] = test_random_float(0, 40);
         }
     for (int way = 0; way < RIG_WAYS; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         frame.depth.pixels = same;
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
@@ -401,7 +401,7 @@ static void test_odd_matrix(void)
     TEST("tyn_render: a shadow matrix that cannot be inverted");
     for (int n = 0; n < 12; n++)
         for (int way = 0; way < RIG_WAYS; way++) {
-            tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
             tyn_light light = r->light[0];
             float *m = light.shadow.matrix;
@@ -424,7 +424,7 @@ static void test_odd_matrix(void)
     rig_free(r);
 }
 
-/* ---- debug views ---------------------------------------------------------------------------------------------------- */
+/* ---- statistics, maps ---------------------------------------------------------------------------------------------- */
 
 /* The counts are what they say. */
 static void test_stats(void)
@@ -433,19 +433,25 @@ static void test_stats(void)
     rig *r = rig_stock("sun ahead", W, H, 128);
     TEST("tyn_render: the statistics");
     for (int way = 0; way < RIG_WAYS; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         const tyn_stats *s = &r->stats;
         size_t bytes;
         CHECK(tyn_measure(&config, &bytes) == TYN_OK);
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
         CHECK(s->pixels == W * H && s->memory == bytes);
-        CHECK_NEAR(s->rays_percent, 100.0 * (double)(s->rays + s->rejected) / (W * H), 1e-4);
+        CHECK_NEAR(s->rays_percent, 100.0 * (double)(s->rays + s->rejected + s->corrected) / (W * H), 1e-4);
         CHECK(s->rejected >= 0 && s->rejected <= W * H && s->walks >= 0 && s->walks <= s->rays && s->breaks <= s->samples);
-        if (config.method == TYN_METHOD_EPIPOLAR)
+        CHECK((config.downscale == 1) == (s->corrected == 0) && s->corrected >= 0 && s->corrected < W * H / 4);
+        if (config.method == TYN_METHOD_EPIPOLAR) {
             CHECK(s->slices > 8 && s->slices <= 2 * (W + H) && s->samples >= s->rays && s->breaks > 0);
-        else
-            CHECK(s->slices == 0 && s->breaks == 0);
+            CHECK(s->initial > s->slices && s->initial <= s->rays && s->culled >= 0);
+            CHECK((s->columns > 0) == (config.rays != TYN_RAYS_STEPS) && (s->looked > 0) == (s->columns > 0));
+            if (s->columns > 0)
+                CHECK_NEAR(s->looked_per_ray, (double)s->looked / (double)(s->rays - s->walks), 1e-4);
+        } else {
+            CHECK(s->slices == 0 && s->breaks == 0 && s->initial == 0 && s->columns == 0 && s->looked == 0);
+        }
         if (config.method == TYN_METHOD_MARCH)
             CHECK(s->rays == W * H && s->rejected == 0);
         if (config.method == TYN_METHOD_NONE)
@@ -463,7 +469,7 @@ static void test_maps(void)
     static float one[COUNT], none[COUNT];
     TEST("tyn_render: cascades, and what is outside of the maps");
     for (int way = 0; way < RIG_WAYS - 1; way++) {
-        tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+        tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         tyn_light light = r->light[0];
         tyn_shadow coarse = light.shadow;
@@ -504,27 +510,6 @@ static void test_maps(void)
     rig_free(r);
 }
 
-/* Each debug view is drawn, differs from the picture, and leaves L_scat alone. */
-static void test_debug(void)
-{
-    enum { W = 64, H = 48 };
-    rig *r = rig_stock("sun ahead", W, H, 128);
-    tyn_config config = rig_config(r, TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS);
-    uint64_t seen[TYN_DEBUG_OUTSIDE + 1];
-    TEST("tyn_render: the debug views");
-    for (int debug = 0; debug <= (int)TYN_DEBUG_OUTSIDE; debug++) {
-        tyn_frame frame = rig_frame(r);
-        frame.debug = (tyn_debug)debug;
-        CHECK(rig_render(r, &config, &frame) == TYN_OK);
-        seen[debug] = rig_hash(r->target, W * H * 4);
-        CHECK(debug == 0 || seen[debug] != seen[0]);
-        for (int i = 0; i < W * H; i++)
-            CHECK(r->target[4 * i + 3] == 255);
-    }
-    CHECK(seen[TYN_DEBUG_LINES] != seen[TYN_DEBUG_SAMPLES] && seen[TYN_DEBUG_SAMPLES] != seen[TYN_DEBUG_BREAKS]);
-    rig_free(r);
-}
-
 void test_render(void)
 {
     test_statuses();
@@ -537,5 +522,4 @@ void test_render(void)
     test_odd_matrix();
     test_stats();
     test_maps();
-    test_debug();
 }

@@ -87,7 +87,7 @@ static void test_any_workers(void)
     for (int n = 0; n < 3; n++) {
         rig *r = rig_stock(scenes[n], W, H, 128);
         for (int way = 0; way < RIG_WAYS; way++) {
-            tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
             uint64_t scatter, target;
             tyn_stats stats;
@@ -132,7 +132,7 @@ static void test_bad_executors(void)
     TEST("tyn_render: executors that forget, repeat or miscount");
     for (int kind = 0; kind < 6; kind++)
         for (int way = 0; way < RIG_WAYS; way++) {
-            tyn_config config = rig_config(r, rig_ways[way].method, rig_ways[way].rays);
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
             tyn_executor executor = {run_bad, &kind, 2};
             guard target = guard_new(40, 30, TYN_RGBA8_SRGB, 0);
@@ -168,7 +168,7 @@ static void test_no_history(void)
         uint64_t time = 0;
         for (int i = 0; i < 4; i++)
             r[i] = rig_stock(scenes[i], 64 - 9 * i, 48 - 7 * i, 128);
-        config = rig_config(r[0], rig_ways[way].method, rig_ways[way].rays);
+        config = rig_way_config(r[0], &rig_ways[way]);
         for (int i = 0; i < 4; i++) {
             tyn_frame frame = rig_frame(r[i]);
             CHECK(rig_render(r[i], &config, &frame) == TYN_OK);

@@ -3,6 +3,7 @@
 #include "foreign_write.h"
 
 #include <errno.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,23 +17,70 @@ static const word methods[] = {{"epipolar", TYN_METHOD_EPIPOLAR},
                                {"subsample", TYN_METHOD_SUBSAMPLE},
                                {"none", TYN_METHOD_NONE},
                                {NULL, 0}};
-static const word rays[] = {{"words", TYN_RAYS_WORDS}, {"steps", TYN_RAYS_STEPS}, {NULL, 0}};
+static const word rays[] = {{"words", TYN_RAYS_WORDS},     {"tree", TYN_RAYS_TREE},   {"sweep", TYN_RAYS_SWEEP},
+                            {"columns", TYN_RAYS_COLUMNS}, {"steps", TYN_RAYS_STEPS}, {NULL, 0}};
+static const word gathers[] = {{"shear", TYN_GATHER_SHEAR}, {"ivb", TYN_GATHER_IVB}, {"ed10", TYN_GATHER_ED10}, {NULL, 0}};
+static const word kernels[] = {
+    {"gaussian", TYN_KERNEL_GAUSSIAN}, {"shepard", TYN_KERNEL_SHEPARD}, {"threshold", TYN_KERNEL_THRESHOLD}, {NULL, 0}};
 static const word presets[] = {{"handheld", TYN_PRESET_HANDHELD},
                                {"balanced", TYN_PRESET_BALANCED},
                                {"quality", TYN_PRESET_QUALITY},
                                {"reference", TYN_PRESET_REFERENCE},
                                {NULL, 0}};
-static const word debugs[] = {{"lines", TYN_DEBUG_LINES},
-                              {"samples", TYN_DEBUG_SAMPLES},
-                              {"breaks", TYN_DEBUG_BREAKS},
-                              {"scatter", TYN_DEBUG_SCATTER},
-                              {"rejected", TYN_DEBUG_REJECTED},
-                              {"outside", TYN_DEBUG_OUTSIDE},
-                              {NULL, 0}};
+static const word debugs[] = {{"lines", TYN_DEBUG_LINES},     {"samples", TYN_DEBUG_SAMPLES},
+                              {"breaks", TYN_DEBUG_BREAKS},   {"sources", TYN_DEBUG_SOURCES},
+                              {"scatter", TYN_DEBUG_SCATTER}, {"row", TYN_DEBUG_ROW},
+                              {"tree", TYN_DEBUG_TREE},       {"rejected", TYN_DEBUG_REJECTED},
+                              {"outside", TYN_DEBUG_OUTSIDE}, {NULL, 0}};
+
+/* Options that set one number of the settings. */
+typedef struct setting {
+    const char *name;
+    enum { COUNT, POWER_OF_TWO, NUMBER, WORD } kind;
+    size_t at;         /* in render_settings: int32_t, float for a NUMBER */
+    int32_t low, high; /* of COUNT and POWER_OF_TWO */
+    float most;        /* of a NUMBER, which is above 0 */
+    const word *words;
+} setting;
+
+#define COUNT_AT(name, field, low, high)                                                                                       \
+    {                                                                                                                          \
+        name, COUNT, offsetof(render_settings, field), low, high, 0.0f, NULL                                                   \
+    }
+#define POWER_AT(name, field, high)                                                                                            \
+    {                                                                                                                          \
+        name, POWER_OF_TWO, offsetof(render_settings, field), 1, high, 0.0f, NULL                                              \
+    }
+#define NUMBER_AT(name, field, most)                                                                                           \
+    {                                                                                                                          \
+        name, NUMBER, offsetof(render_settings, field), 0, 0, most, NULL                                                       \
+    }
+#define WORD_AT(name, field, words)                                                                                            \
+    {                                                                                                                          \
+        name, WORD, offsetof(render_settings, field), 0, 0, 0.0f, words                                                        \
+    }
+
+static const setting settings[] = {WORD_AT("--method", method, methods),
+                                   WORD_AT("--rays", rays, rays),
+                                   COUNT_AT("--steps", steps, 1, 4096),
+                                   WORD_AT("--gather", gather, gathers),
+                                   COUNT_AT("--taps", taps, 3, 5),
+                                   WORD_AT("--kernel", kernel, kernels),
+                                   COUNT_AT("--slices", slices, 8, 65536),
+                                   COUNT_AT("--samples", samples, 2, 65536),
+                                   POWER_AT("--initial-step", initial_step, 64),
+                                   NUMBER_AT("--break", break_threshold, 1.0f),
+                                   NUMBER_AT("--tolerance", tolerance, 1.0f),
+                                   POWER_AT("--downscale", downscale, 8),
+                                   COUNT_AT("--budget", budget, 1, 0x7fffffff),
+                                   COUNT_AT("--shadow-size", shadow_size, 1, TYN_MAX_SHADOW),
+                                   WORD_AT("--preset", preset, presets),
+                                   NUMBER_AT("--exposure", exposure, 3.4e38f),
+                                   WORD_AT("--debug", debug, debugs)};
+enum { SETTINGS = sizeof settings / sizeof *settings };
 
 /* In the command line's plan, not in the library yet. */
-static const char *const later[] = {"--gather", "--downscale", "--bases",  "--weights", "--rectify",
-                                    "--splits", "--isa",       "--frames", NULL};
+static const char *const later[] = {"--bases", "--weights", "--rectify", "--splits", "--isa", "--frames", NULL};
 
 static int bad(const char *option, const char *value, const char *why)
 {
@@ -59,37 +107,57 @@ static int whole(const char *text, long low, long high, const char **end, int32_
     return 0;
 }
 
-static int count_option(const char *name, const char *value, int32_t low, int32_t high, int32_t *out)
+static int take_count(const setting *s, const char *value, int32_t *out)
 {
-    char why[80];
-    if (whole(value, low, high, NULL, out) == 0)
+    char why[80] = "must be a power of two", *at = why;
+    if (whole(value, s->low, s->high, NULL, out) == 0 && (s->kind == COUNT || (*out & (*out - 1)) == 0))
         return 0;
-    snprintf(why, sizeof why, "must be a whole number from %ld to %ld", (long)low, (long)high);
-    return bad(name, value, why);
+    if (s->kind == COUNT)
+        at += sprintf(at, "must be a whole number");
+    else
+        at += strlen(at);
+    sprintf(at, " from %ld to %ld", (long)s->low, (long)s->high);
+    return bad(s->name, value, why);
 }
 
-static int number_option(const char *name, const char *value, float high, float *out)
+static int take_number(const setting *s, const char *value, float *out)
 {
     char *end;
     float x = strtof(value, &end);
-    if (end != value && *end == '\0' && x > 0.0f && x <= high) {
+    if (end != value && *end == '\0' && x > 0.0f && x <= s->most) {
         *out = x;
         return 0;
     }
-    return bad(name, value, high > 1.0f ? "must be a number above 0" : "must be a number above 0, at most 1");
+    return bad(s->name, value, s->most > 1.0f ? "must be a number above 0" : "must be a number above 0, at most 1");
 }
 
-static int word_option(const char *name, const char *value, const word *words, int *out)
+static int take_word(const setting *s, const char *value, int32_t *out)
 {
     char why[200] = "is not one of";
-    for (const word *w = words; w->name; w++) {
+    for (const word *w = s->words; w->name; w++) {
         if (strcmp(value, w->name) == 0) {
-            *out = w->value;
+            *out = w->value + 1; /* 0 stands for "not given" */
             return 0;
         }
         strcat(strcat(why, " "), w->name); /* the lists above are short */
     }
-    return bad(name, value, why);
+    return bad(s->name, value, why);
+}
+
+static int take_setting(const setting *s, const char *value, render_settings *r)
+{
+    void *at = (char *)r + s->at;
+    if (s->kind == NUMBER)
+        return take_number(s, value, at);
+    return s->kind == WORD ? take_word(s, value, at) : take_count(s, value, at);
+}
+
+static const setting *setting_of(const char *name)
+{
+    for (int i = 0; i < SETTINGS; i++)
+        if (strcmp(name, settings[i].name) == 0)
+            return &settings[i];
+    return NULL;
 }
 
 static int size_option(const char *value, render_settings *r)
@@ -101,10 +169,24 @@ static int size_option(const char *value, render_settings *r)
     return bad("--size", value, "must be WxH with whole numbers from 1 to 32768");
 }
 
+/* A pixel of --debug row and tree. */
+static int point_option(const char *value, render_settings *r)
+{
+    const char *at;
+    int32_t x, y;
+    if (whole(value, 0, TYN_MAX_SIZE - 1, &at, &x) == 0 && *at == ',' && whole(at + 1, 0, TYN_MAX_SIZE - 1, NULL, &y) == 0) {
+        r->debug_x = (float)x + 0.5f;
+        r->debug_y = (float)y + 0.5f;
+        return 0;
+    }
+    return bad("--at", value, "must be X,Y, a pixel");
+}
+
 static int take(options *o, const char *name, const char *value)
 {
     render_settings *r = &o->settings;
-    int picked = 0, result;
+    const setting *s = setting_of(name);
+    static const setting count_of_threads = {"--threads", COUNT, 0, 1, TYN_MAX_WORKERS, 0.0f, NULL};
     if (strcmp(name, "-o") == 0) {
         o->out = value;
         o->kind = output_kind_of(value);
@@ -121,49 +203,11 @@ static int take(options *o, const char *name, const char *value)
     }
     if (strcmp(name, "--size") == 0)
         return size_option(value, r);
-    if (strcmp(name, "--method") == 0) {
-        result = word_option(name, value, methods, &picked);
-        r->method = (tyn_method)picked;
-        r->method_given = 1;
-        return result;
-    }
-    if (strcmp(name, "--rays") == 0) {
-        result = word_option(name, value, rays, &picked);
-        r->rays = (tyn_rays)picked;
-        r->rays_given = 1;
-        return result;
-    }
-    if (strcmp(name, "--preset") == 0) {
-        result = word_option(name, value, presets, &picked);
-        r->preset = (tyn_preset)picked;
-        r->preset_given = 1;
-        return result;
-    }
-    if (strcmp(name, "--debug") == 0) {
-        result = word_option(name, value, debugs, &picked);
-        r->debug = (tyn_debug)picked;
-        return result;
-    }
-    if (strcmp(name, "--steps") == 0)
-        return count_option(name, value, 1, 4096, &r->steps);
-    if (strcmp(name, "--slices") == 0)
-        return count_option(name, value, 8, 65536, &r->slices);
-    if (strcmp(name, "--samples") == 0)
-        return count_option(name, value, 2, 65536, &r->samples);
-    if (strcmp(name, "--shadow-size") == 0)
-        return count_option(name, value, 1, TYN_MAX_SHADOW, &r->shadow_size);
+    if (strcmp(name, "--at") == 0)
+        return point_option(value, r);
     if (strcmp(name, "--threads") == 0)
-        return count_option(name, value, 1, TYN_MAX_WORKERS, &o->threads);
-    if (strcmp(name, "--initial-step") == 0) {
-        if (whole(value, 1, 64, NULL, &r->initial_step) == 0 && (r->initial_step & (r->initial_step - 1)) == 0)
-            return 0;
-        return bad(name, value, "must be 1, 2, 4, 8, 16, 32 or 64");
-    }
-    if (strcmp(name, "--break") == 0)
-        return number_option(name, value, 1.0f, &r->break_threshold);
-    if (strcmp(name, "--exposure") == 0)
-        return number_option(name, value, 3.4e38f, &r->exposure);
-    return bad(name, NULL, "unknown option");
+        return take_count(&count_of_threads, value, &o->threads);
+    return s ? take_setting(s, value, r) : bad(name, NULL, "unknown option");
 }
 
 static int is_in(const char *name, const char *const *list)
@@ -179,11 +223,9 @@ static const char *const of_scenes[] = {"--size", "--surface", "--depth", "--fra
 
 static int takes_value(const char *name)
 {
-    static const char *const valued[] = {
-        "-o",        "--scatter",  "--surface", "--depth",        "--size",  "--method",      "--rays",
-        "--steps",   "--slices",   "--samples", "--initial-step", "--break", "--shadow-size", "--preset",
-        "--threads", "--exposure", "--debug",   "--frame",        NULL};
-    return is_in(name, valued);
+    static const char *const others[] = {"-o",      "--scatter", "--surface", "--depth", "--size",
+                                         "--frame", "--threads", "--at",      NULL};
+    return setting_of(name) || is_in(name, others);
 }
 
 /* Two outputs of one name would overwrite each other. */
@@ -288,15 +330,22 @@ void options_help(options_command command)
            "  --scatter F.pfm    also the scattered light alone\n"
            "  --preset P         handheld, balanced, quality (default), reference\n"
            "  --method M         epipolar (default), march (every pixel), subsample, none\n"
-           "  --rays R           words (default, exact on the row), steps (fixed steps, see --steps)\n"
+           "  --rays R           words (default), tree, sweep, columns: the same picture; steps: fixed steps, see --steps\n"
            "  --steps N          per ray, 1 .. 4096\n"
+           "  --gather G         shear (default), ivb, ed10: lines on the screen, and pixels from them\n"
+           "  --taps N           of ed10, on each line, 3 .. 5\n"
+           "  --kernel K         of ed10: gaussian (default), shepard, threshold\n"
            "  --slices N         epipolar slices, 8 .. 65536\n"
            "  --samples N        along a slice, 2 .. 65536\n"
            "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
            "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
+           "  --tolerance T      refinement on light: error that rays between rays are set for, above 0, at most 1 (never)\n"
+           "  --downscale F      1, 2, 4, 8: computed for each such row and column, then scaled up\n"
+           "  --budget N         of --method subsample: rays, about\n"
            "  --threads N        1 .. 64; default: the machine's\n"
            "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
-           "  --debug V          draw lines, samples, breaks, scatter, rejected or outside instead of the picture\n"
+           "  --debug V          draw lines, samples, breaks, sources, scatter, row, tree, rejected or outside instead\n"
+           "  --at X,Y           of --debug row and tree: the pixel whose slice and ray are drawn; default: the middle\n"
            "  --stats            print one \"name value\" a line\n"
            "\n"
            "A file appears when it is complete, or not at all. Exit status: 0 complete, 1 bad input, 2 bad usage.\n");

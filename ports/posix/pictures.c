@@ -11,25 +11,51 @@ static double ms(uint64_t ns)
     return (double)ns * 1e-6;
 }
 
-void pictures_stats(const render_result *r, uint64_t load_ns, uint64_t start)
+static void print_counts(const tyn_stats *s)
+{
+    const struct {
+        const char *name;
+        int64_t count;
+    } counts[] = {{"pixels", s->pixels},   {"slices", s->slices},   {"culled", s->culled},     {"samples", s->samples},
+                  {"breaks", s->breaks},   {"initial", s->initial}, {"rays", s->rays},         {"walks", s->walks},
+                  {"columns", s->columns}, {"looked", s->looked},   {"rejected", s->rejected}, {"corrected", s->corrected}};
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        printf("%s %lld\n", counts[i].name, (long long)counts[i].count);
+    printf("rays_percent %.4g\n", (double)s->rays_percent);
+    printf("looked_per_ray %.4g\n", (double)s->looked_per_ray);
+    printf("memory_bytes %llu\n", (unsigned long long)s->memory);
+}
+
+/* On the wall from "load" to "gather" and "shafts"; the stages between them, called stage_, are sums over threads. */
+static void print_times(const render_result *r, uint64_t load_ns)
 {
     const tyn_stats *s = &r->stats;
-    printf("pixels %lld\n", (long long)s->pixels);
-    printf("slices %lld\n", (long long)s->slices);
-    printf("samples %lld\n", (long long)s->samples);
-    printf("breaks %lld\n", (long long)s->breaks);
-    printf("rays %lld\n", (long long)s->rays);
-    printf("rays_percent %.4g\n", (double)s->rays_percent);
-    printf("walks %lld\n", (long long)s->walks);
-    printf("rejected %lld\n", (long long)s->rejected);
-    printf("memory_bytes %llu\n", (unsigned long long)s->memory);
+    const struct {
+        const char *name;
+        uint64_t ns;
+    } times[] = {{"load", load_ns},
+                 {"shadow", r->times.shadow_ns},
+                 {"surface", r->times.surface_ns},
+                 {"slice", s->slice_ns},
+                 {"stage_sample", s->sample_ns},
+                 {"stage_row", s->row_ns},
+                 {"stage_ray", s->ray_ns},
+                 {"stage_line", s->line_ns},
+                 {"gather", s->gather_ns},
+                 {"stage_unwarp", s->unwarp_ns},
+                 {"stage_upscale", s->upscale_ns},
+                 {"stage_correct", s->correct_ns},
+                 {"stage_composite", s->composite_ns},
+                 {"shafts", s->total_ns}};
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++)
+        printf("%s_ms %.3f\n", times[i].name, ms(times[i].ns));
+}
+
+void pictures_stats(const render_result *r, uint64_t load_ns, uint64_t start)
+{
+    print_counts(&r->stats);
     printf("exposure %.9g\n", (double)r->exposure);
-    printf("load_ms %.3f\n", ms(load_ns));
-    printf("shadow_ms %.3f\n", ms(r->times.shadow_ns));
-    printf("surface_ms %.3f\n", ms(r->times.surface_ns));
-    printf("slice_ms %.3f\n", ms(s->slice_ns));
-    printf("gather_ms %.3f\n", ms(s->gather_ns));
-    printf("shafts_ms %.3f\n", ms(s->total_ns));
+    print_times(r, load_ns);
     printf("total_ms %.3f\n", ms(clock_now(NULL) - start));
 }
 

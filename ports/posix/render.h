@@ -6,20 +6,16 @@
 #include "pool.h"
 #include "scene.h"
 
-/* Zero bytes mean the defaults. */
+/* Zero bytes mean the defaults: the preset's. */
 typedef struct render_settings {
-    int32_t width, height; /* 0: the scene's */
-    tyn_preset preset;
-    int preset_given; /* 0: TYN_PRESET_QUALITY */
-    tyn_method method;
-    int method_given;
-    tyn_rays rays;
-    int rays_given;
-    int32_t steps, slices, samples, initial_step, shadow_size; /* 0: the preset's */
-    float break_threshold;                                     /* 0: the preset's */
-    float exposure;                                            /* 0: automatic for display, 1 for linear pictures */
-    tyn_debug debug;                                           /* a second picture, drawn in debug_format */
-    tyn_format debug_format;
+    int32_t width, height;                               /* 0: the scene's */
+    int32_t preset, method, rays, gather, kernel, debug; /* a value of the enum + 1 */
+    int32_t steps, slices, samples, initial_step, shadow_size;
+    int32_t taps, downscale, budget;
+    float break_threshold, tolerance;
+    float exposure;                            /* automatic for display, 1 for linear pictures */
+    float debug_x, debug_y;                    /* as in tyn_frame */
+    tyn_format debug_format;                   /* of the second picture that debug draws */
     int want_scatter, want_surface, want_maps; /* keep these too; depth is always there */
 } render_settings;
 

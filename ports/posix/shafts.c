@@ -18,27 +18,35 @@ void *shafts_aligned(size_t bytes, void **block)
     return *block ? (void *)(((uintptr_t)*block + TYN_ALIGNMENT - 1) / TYN_ALIGNMENT * TYN_ALIGNMENT) : NULL;
 }
 
+static void choose(int32_t *to, int32_t from)
+{
+    if (from)
+        *to = from;
+}
+
 tyn_status shafts_config(tyn_config *c, const render_settings *r, int32_t width, int32_t height)
 {
-    tyn_status status = tyn_config_preset(c, r->preset_given ? r->preset : TYN_PRESET_QUALITY, width, height);
+    tyn_status status = tyn_config_preset(c, r->preset ? (tyn_preset)(r->preset - 1) : TYN_PRESET_QUALITY, width, height);
     if (status != TYN_OK)
         return status;
-    if (r->method_given)
-        c->method = r->method;
-    if (r->rays_given)
-        c->rays = r->rays;
-    if (r->steps)
-        c->steps = r->steps;
-    if (r->slices)
-        c->slices = r->slices;
-    if (r->samples)
-        c->samples = r->samples;
-    if (r->initial_step)
-        c->initial_step = r->initial_step;
+    c->method = r->method ? (tyn_method)(r->method - 1) : c->method;
+    c->rays = r->rays ? (tyn_rays)(r->rays - 1) : c->rays;
+    if (r->debug == TYN_DEBUG_TREE + 1)
+        c->rays = TYN_RAYS_TREE;
+    c->gather = r->gather ? (tyn_gather)(r->gather - 1) : c->gather;
+    c->kernel = r->kernel ? (tyn_kernel)(r->kernel - 1) : c->kernel;
+    choose(&c->steps, r->steps);
+    choose(&c->slices, r->slices);
+    choose(&c->samples, r->samples);
+    choose(&c->initial_step, r->initial_step);
+    choose(&c->taps, r->taps);
+    choose(&c->downscale, r->downscale);
+    choose(&c->budget, r->budget);
+    choose(&c->shadow_size, r->shadow_size);
     if (r->break_threshold > 0.0f)
         c->break_threshold = r->break_threshold;
-    if (r->shadow_size)
-        c->shadow_size = r->shadow_size;
+    if (r->tolerance > 0.0f)
+        c->tolerance = r->tolerance;
     if (c->shadow_size == 0)
         c->shadow_size = DEFAULT_SHADOW;
     return TYN_OK;
@@ -111,7 +119,9 @@ static tyn_status draw_debug(tyn_context *context, tyn_frame *f, const render_se
     f->display.exposure = r->debug_format == TYN_RGB_F32 && !(r->exposure > 0.0f) ? 1.0f : out->exposure;
     f->display.tone = TYN_TONE_FILM;
     f->display.dither = 1;
-    f->debug = r->debug;
+    f->debug = (tyn_debug)(r->debug - 1);
+    f->debug_x = r->debug_x;
+    f->debug_y = r->debug_y;
     f->stats = NULL;
     return tyn_render(context, f);
 }
@@ -142,7 +152,7 @@ int shafts_draw(const tyn_config *config, tyn_frame *f, const render_settings *r
     out->times.shafts_ns = clock_now(NULL) - start;
     if (status == TYN_OK) {
         out->exposure = r->exposure > 0.0f ? r->exposure : render_exposure(out->radiance, out->width, out->height);
-        if (r->debug != TYN_DEBUG_NONE)
+        if (r->debug)
             status = draw_debug(context, f, r, out);
     }
     free(block);
