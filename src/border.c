@@ -117,6 +117,13 @@ static void keep(tyni_slice *s, float at, float step, float low, float high)
     s->last = tyni_mini(s->last, tyni_floori(tyni_clampf(tyni_maxf(a, b), -1.0f, 65536.0f)));
 }
 
+/* The line begins at the epipole, not at the border. */
+static int from_epipole(const tyni_slices *g, const tyni_spoke *s)
+{
+    float dx = s->x * g->ew - g->ex, dy = s->y * g->ew - g->ey;
+    return g->ew > 0.0f && dx * dx + dy * dy < 0.01f * g->ew * g->ew;
+}
+
 void tyni_border_line(tyni_slice *s, const tyni_slices *g, const tyni_lamp *lamp, const tyni_view *view, int32_t index)
 {
     const tyni_spoke *spoke = &g->spokes[index];
@@ -129,7 +136,8 @@ void tyni_border_line(tyni_slice *s, const tyni_slices *g, const tyni_lamp *lamp
     along = s->along_y ? g->ey : g->ex;
     s->epipole = g->ew > 0.0f ? tyni_clampf(along / g->ew, -1e9f, 1e9f) : s->dp > 0.0f ? -1e9f : 1e9f;
     tyni_slice_plane(s, tyni_slice_p(s, g->samples - 1), lamp, view);
-    s->first = 0;
+    /* not the light's own place, where all lines meet and a ray runs into the light: its light is no neighbour's */
+    s->first = from_epipole(g, spoke) ? tyni_mini(1 + (int32_t)(0.5f * sqrtf(square)), g->samples - 1) : 0;
     s->last = g->samples - 1;
     keep(s, spoke->x, dx, LOW, high_x(g));
     keep(s, spoke->y, dy, LOW, high_y(g));
