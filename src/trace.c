@@ -167,8 +167,8 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     if (tyni_debug_marks(p->frame->debug))
         tyni_debug_mark_initial(p, index, &slice, s.rays, s.breaks);
     run_rays(p, &slice, &finder, s.rays, &s);
-    while (tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2), slice.first, slice.last,
-                              config->tolerance))
+    while (config->tolerance < 1.0f && tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2),
+                                                          slice.first, slice.last, config->tolerance))
         run_rays(p, &slice, &finder, s.fresh, &s);
     time[3] = tyni_pass_now(p);
     if (tyni_debug_marks(p->frame->debug)) {

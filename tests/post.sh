@@ -224,7 +224,7 @@ expect 'art' 0 "$tyndall" post art.frame -o o/art.pfm
 rm -rf o
 mkdir o
 for bad in '' 'flat.frame flat.frame' 'flat.frame --size 8x8' 'flat.frame --surface o/s.pfm' 'flat.frame --depth o/d.pfm' \
-    'flat.frame --frame o/f' 'flat.frame --gather ivb'; do
+    'flat.frame --frame o/f' 'flat.frame --gather ed'; do
     # shellcheck disable=SC2086
     expect "post $bad" 2 "$tyndall" post -o o/a.png $bad
 done

@@ -132,7 +132,7 @@ static void one(rig *r, const char *name, const art *a, int textured)
     for (int way = 0; way < RIG_WAYS; way++) {
         tyn_config config = rig_way_config(r, &rig_ways[way]);
         int march = config.method == TYN_METHOD_MARCH;
-        if (textured && config.method != TYN_METHOD_EPIPOLAR && !march)
+        if (textured && !march && way) /* coloured light is slow, and one code for all lines */
             continue;
         config.textured = textured;
         config.steps = 60;

@@ -58,10 +58,11 @@ expect 'ending' 2 "$tyndall" render good.scene -o o/a.jpg
 expect 'ending of --depth' 2 "$tyndall" render good.scene -o o/a.png --depth o/d.png
 expect 'one name twice' 2 "$tyndall" render good.scene -o o/a.pfm --scatter o/a.pfm
 for bad in '--size 0x9' '--size 10' '--size 10x' '--size 10x10x10' '--size 32769x1' '--size -1x1' '--method tree' '--method hybrid' \
-    '--method prefiltered' '--rays tree' '--steps 0' '--steps 4097' '--steps 1e2' '--slices 7' '--slices 65537' '--samples 1' \
+    '--method prefiltered' '--rays trees' '--steps 0' '--steps 4097' '--steps 1e2' '--slices 7' '--slices 65537' '--samples 1' \
     '--initial-step 3' '--initial-step 128' '--break 0' '--break 1.5' '--break x' '--break nan' '--shadow-size 0' \
     '--shadow-size 16385' '--preset best' '--threads 0' '--threads 65' '--threads two' '--exposure 0' '--exposure -1' \
-    '--exposure inf' '--debug tree' '--debug basis' '--gather ivb' '--downscale 2' '--bases 8' '--weights average' \
+    '--exposure inf' '--debug trees' '--debug basis' '--gather ed' '--taps 2' '--taps 6' '--kernel box' '--downscale 3' \
+    '--downscale 16' '--tolerance 0' '--tolerance 2' '--budget 0' '--at 3' '--at 3,' '--at -1,2' '--bases 8' '--weights average' \
     '--rectify epipolar' '--splits 4' '--isa scalar' '--frames 1-2' '--unknown' '-x'; do
     # shellcheck disable=SC2086
     expect "$bad" 2 "$tyndall" render good.scene -o o/a.png $bad && says "$bad is named" "${bad%% *}"
@@ -84,16 +85,27 @@ size() { wc -c <"$1" | tr -d ' '; }
 empty 'sizes of raw pictures' "$([ "$(size o/a.rgba)" = 12288 ] && [ "$(size o/a.rgb565)" = 6144 ] && [ "$(size o/a.ppm)" = 9229 ] &&
     [ "$(size o/a.pfm)" = 36878 ] || ls -l o)"
 expect 'all outputs and options' 0 "$tyndall" render good.scene -o o/b.pfm --scatter o/s.pfm --surface o/f.pfm --depth o/d.pfm \
-    --size 40x30 --method epipolar --rays words --steps 50 --slices 128 --samples 100 --initial-step 8 --break 0.1 \
+    --size 40x30 --method epipolar --rays words --steps 50 --slices 128 --samples 100 --initial-step 8 --break 0.1 --tolerance 0.02 \
+    --gather ed10 --taps 4 --kernel shepard --downscale 2 --budget 100 \
     --shadow-size 256 --preset balanced --threads 3 --exposure 2 --stats
-for value in pixels slices samples breaks rays rays_percent walks rejected memory_bytes shadow_ms surface_ms slice_ms gather_ms total_ms; do
+for value in pixels slices culled samples breaks initial rays rays_percent walks columns looked looked_per_ray rejected corrected \
+    memory_bytes shadow_ms surface_ms slice_ms gather_ms stage_sample_ms stage_row_ms stage_ray_ms stage_line_ms stage_unwarp_ms \
+    stage_upscale_ms stage_correct_ms stage_composite_ms total_ms; do
     empty "--stats has $value" "$(grep -q "^$value [0-9.e+-]*\$" out.txt || cat out.txt)"
 done
 for method in march subsample none; do
     expect "--method $method" 0 "$tyndall" render good.scene -o "o/$method.pfm" --method "$method" --rays steps
 done
-for debug in lines samples breaks scatter rejected outside; do
+for debug in lines samples breaks sources scatter row tree rejected outside; do
     expect "--debug $debug" 0 "$tyndall" render good.scene -o "o/$debug.png" --debug "$debug"
+done
+expect '--debug row --at' 0 "$tyndall" render good.scene -o o/row2.png --debug row --at 3,40
+empty 'another row' "$(cmp -s o/row.png o/row2.png && echo the same)"
+for gather in shear ivb ed10; do
+    for rays in words tree sweep columns; do
+        expect "--gather $gather --rays $rays" 0 "$tyndall" render good.scene -o "o/$gather.$rays.pfm" --gather $gather --rays $rays
+        quiet "--gather $gather --rays $rays: the bytes of words" cmp "o/$gather.words.pfm" "o/$gather.$rays.pfm"
+    done
 done
 expect 'threads 1' 0 "$tyndall" render good.scene -o o/t1.pfm --threads 1
 expect 'threads 5' 0 "$tyndall" render good.scene -o o/t5.pfm --threads 5
