@@ -62,7 +62,7 @@ for bad in '--size 0x9' '--size 10' '--size 10x' '--size 10x10x10' '--size 32769
     '--initial-step 3' '--initial-step 128' '--break 0' '--break 1.5' '--break x' '--break nan' '--shadow-size 0' \
     '--shadow-size 16385' '--preset best' '--threads 0' '--threads 65' '--threads two' '--exposure 0' '--exposure -1' \
     '--exposure inf' '--debug tree' '--debug basis' '--gather ivb' '--downscale 2' '--bases 8' '--weights average' \
-    '--rectify epipolar' '--splits 4' '--isa scalar' '--frames 1-2' '--unknown' '-x'; do
+    '--rectify epipolar' '--splits 4' '--isa mmx' '--frames 1-2' '--unknown' '-x'; do
     # shellcheck disable=SC2086
     expect "$bad" 2 "$tyndall" render good.scene -o o/a.png $bad && says "$bad is named" "${bad%% *}"
 done

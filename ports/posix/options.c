@@ -22,6 +22,13 @@ static const word presets[] = {{"handheld", TYN_PRESET_HANDHELD},
                                {"quality", TYN_PRESET_QUALITY},
                                {"reference", TYN_PRESET_REFERENCE},
                                {NULL, 0}};
+static const word isas[] = {{"scalar", TYN_ISA_SCALAR},
+                            {"sse2", TYN_ISA_SSE2},
+                            {"avx2", TYN_ISA_AVX2},
+                            {"avx512", TYN_ISA_AVX512},
+                            {"neon", TYN_ISA_NEON},
+                            {"wasm", TYN_ISA_WASM},
+                            {NULL, 0}};
 static const word debugs[] = {{"lines", TYN_DEBUG_LINES},
                               {"samples", TYN_DEBUG_SAMPLES},
                               {"breaks", TYN_DEBUG_BREAKS},
@@ -31,8 +38,8 @@ static const word debugs[] = {{"lines", TYN_DEBUG_LINES},
                               {NULL, 0}};
 
 /* In the command line's plan, not in the library yet. */
-static const char *const later[] = {"--gather", "--downscale", "--bases",  "--weights", "--rectify",
-                                    "--splits", "--isa",       "--frames", NULL};
+static const char *const later[] = {"--gather",  "--downscale", "--bases",  "--weights",
+                                    "--rectify", "--splits",    "--frames", NULL};
 
 static int bad(const char *option, const char *value, const char *why)
 {
@@ -144,6 +151,13 @@ static int take(options *o, const char *name, const char *value)
         r->debug = (tyn_debug)picked;
         return result;
     }
+    if (strcmp(name, "--isa") == 0) {
+        result = word_option(name, value, isas, &picked);
+        r->isa = (int32_t)picked;
+        if (result == 0 && !(tyn_isa_available() & picked))
+            return bad(name, value, tyn_isa_built() & picked ? "this machine lacks it" : "is not built in");
+        return result;
+    }
     if (strcmp(name, "--steps") == 0)
         return count_option(name, value, 1, 4096, &r->steps);
     if (strcmp(name, "--slices") == 0)
@@ -180,9 +194,9 @@ static const char *const of_scenes[] = {"--size", "--surface", "--depth", "--fra
 static int takes_value(const char *name)
 {
     static const char *const valued[] = {
-        "-o",        "--scatter",  "--surface", "--depth",        "--size",  "--method",      "--rays",
-        "--steps",   "--slices",   "--samples", "--initial-step", "--break", "--shadow-size", "--preset",
-        "--threads", "--exposure", "--debug",   "--frame",        NULL};
+        "-o",       "--scatter", "--surface",      "--depth", "--size",        "--method", "--rays",    "--steps",
+        "--slices", "--samples", "--initial-step", "--break", "--shadow-size", "--preset", "--threads", "--exposure",
+        "--debug",  "--frame",   "--isa",          NULL};
     return is_in(name, valued);
 }
 
@@ -283,21 +297,23 @@ void options_help(options_command command)
         help_of_post();
     else
         help_of_render();
-    printf("  -o FILE            .png, .ppm (display, 8 bit), .pfm (linear radiance), .rgb565, .rgba (raw, no header;\n"
-           "                     16 bit values low byte first)\n"
-           "  --scatter F.pfm    also the scattered light alone\n"
-           "  --preset P         handheld, balanced, quality (default), reference\n"
-           "  --method M         epipolar (default), march (every pixel), subsample, none\n"
-           "  --rays R           words (default, exact on the row), steps (fixed steps, see --steps)\n"
-           "  --steps N          per ray, 1 .. 4096\n"
-           "  --slices N         epipolar slices, 8 .. 65536\n"
-           "  --samples N        along a slice, 2 .. 65536\n"
-           "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
-           "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
-           "  --threads N        1 .. 64; default: the machine's\n"
-           "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
-           "  --debug V          draw lines, samples, breaks, scatter, rejected or outside instead of the picture\n"
-           "  --stats            print one \"name value\" a line\n"
-           "\n"
-           "A file appears when it is complete, or not at all. Exit status: 0 complete, 1 bad input, 2 bad usage.\n");
+    printf(
+        "  -o FILE            .png, .ppm (display, 8 bit), .pfm (linear radiance), .rgb565, .rgba (raw, no header;\n"
+        "                     16 bit values low byte first)\n"
+        "  --scatter F.pfm    also the scattered light alone\n"
+        "  --preset P         handheld, balanced, quality (default), reference\n"
+        "  --method M         epipolar (default), march (every pixel), subsample, none\n"
+        "  --rays R           words (default, exact on the row), steps (fixed steps, see --steps)\n"
+        "  --steps N          per ray, 1 .. 4096\n"
+        "  --slices N         epipolar slices, 8 .. 65536\n"
+        "  --samples N        along a slice, 2 .. 65536\n"
+        "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
+        "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
+        "  --threads N        1 .. 64; default: the machine's\n"
+        "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
+        "  --debug V          draw lines, samples, breaks, scatter, rejected or outside instead of the picture\n"
+        "  --isa I            scalar, sse2, avx2, avx512, neon or wasm; default: the best there is. All give the same bytes\n"
+        "  --stats            print one \"name value\" a line\n"
+        "\n"
+        "A file appears when it is complete, or not at all. Exit status: 0 complete, 1 bad input, 2 bad usage.\n");
 }

@@ -17,6 +17,7 @@ typedef struct render_settings {
     int rays_given;
     int32_t steps, slices, samples, initial_step, shadow_size; /* 0: the preset's */
     float break_threshold;                                     /* 0: the preset's */
+    int32_t isa;                                               /* 0: the best */
     float exposure;                                            /* 0: automatic for display, 1 for linear pictures */
     tyn_debug debug;                                           /* a second picture, drawn in debug_format */
     tyn_format debug_format;

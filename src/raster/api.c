@@ -4,6 +4,7 @@
 #include "arena.h"
 #include "check.h"
 #include "jobs.h"
+#include "lanes/lanes.h"
 #include "medium.h"
 #include "vec.h"
 
@@ -25,7 +26,8 @@ static tyn_status resolve(tyn_raster_config *out, const tyn_raster_config *confi
     if (!out->workers)
         out->workers = 1;
     if (out->width < 1 || out->width > TYN_MAX_SIZE || out->height < 1 || out->height > TYN_MAX_SIZE || out->batch < 64 ||
-        out->batch > 65536 || out->workers < 1 || out->workers > TYN_MAX_WORKERS)
+        out->batch > 65536 || out->workers < 1 || out->workers > TYN_MAX_WORKERS || out->isa < 0 ||
+        out->isa >= 2 * TYN_ISA_WASM)
         return TYN_E_CONFIG;
     return TYN_OK;
 }
@@ -48,6 +50,7 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
         raster->height = config->height;
         raster->batch = config->batch;
         raster->workers = config->workers;
+        raster->isa = config->isa;
         raster->pieces = pieces;
         raster->rows = rows;
         raster->chunks = chunks;
@@ -91,6 +94,9 @@ tyn_status tyn_raster_init(tyn_raster **raster, const tyn_raster_config *config,
     if (bytes < needed)
         return TYN_E_MEMORY;
     (void)resolve(&resolved, config);
+    status = tyni_lanes_choose(resolved.isa, &resolved.isa);
+    if (status != TYN_OK)
+        return status;
     *raster = carve(&arena, &resolved);
     return TYN_OK;
 }

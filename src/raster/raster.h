@@ -136,7 +136,7 @@ typedef struct tyni_raster_slopes {
 } tyni_raster_slopes;
 
 struct tyn_raster {
-    int32_t width, height, batch, workers;
+    int32_t width, height, batch, workers, isa;
     tyni_raster_piece *pieces;  /* batch */
     tyni_raster_rows *rows;     /* batch */
     tyni_raster_chunk *chunks;  /* batch / 64, rounded up */
