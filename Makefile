@@ -21,9 +21,9 @@ LIB_SRC := $(wildcard src/*.c src/*/*.c)
 PORT_SRC := $(wildcard ports/posix/*.c)
 TEST_SRC := $(filter-out tests/bench.c tests/fuzz_%.c,$(wildcard tests/*.c))
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
-C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch])
+C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-.PHONY: all run test check-all bench golden install uninstall single format format-check clean help FORCE
+.PHONY: all run test check-all bench bench-raster golden install uninstall single format format-check clean help FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -40,6 +40,10 @@ check-all:
 
 bench: $(B)/bench
 	$(B)/bench
+
+# The rasterizer against Mesa's llvmpipe, where pkg-config finds EGL and GL.
+bench-raster: $(B)/bench-raster
+	$(B)/bench-raster
 
 # Rewrites tests/golden.txt and puts the pictures where one can look at them.
 golden: $(B)/tests
@@ -67,6 +71,10 @@ $(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
 
 $(B)/bench: $(call OBJ,tests/bench.c) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+
+$(B)/bench-raster: $(wildcard tests/bench/*.[ch]) $(B)/libport.a $(B)/libtyndall.a
+	@gl=$$(pkg-config --cflags --libs egl gl 2>/dev/null) && gl="-DBENCH_EGL $$gl"; set -x; \
+	$(CC) $(FLAGS) $(POSIX) -o $@ $(filter %.c,$^) $(filter %.a,$^) $$gl -lm
 
 $(B)/obj/src/%.o: src/%.c $(B)/flags
 	@mkdir -p $(@D)
@@ -123,6 +131,7 @@ help:
 	@echo 'make test       all tests, under a minute'
 	@echo 'make check-all  the tests under other compilers, optimisers and sanitizers, about a quarter of an hour'
 	@echo 'make bench      times against a plain pass over the pixels'
+	@echo 'make bench-raster  the rasterizer, every ISA, and against llvmpipe where EGL and GL are installed'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
 	@echo 'make single     the library as two files, build/single/tyndall.[ch]'
 	@echo 'make install    to PREFIX=/usr/local, below DESTDIR; make uninstall takes it away again'

@@ -572,7 +572,7 @@ typedef struct tyn_raster tyn_raster;
 /* What tyn_raster_measure gives, as a constant expression for a static block. Arguments as in tyn_raster_config, no zeros. */
 #define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
     (0 * (size_t)(width) * (size_t)(height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +               \
-     TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
+     TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64) + TYNI_BYTES(workers, 10240) + TYNI_BYTES(workers, 1088))
 #define TYN_RASTER_BYTES 23680
 
 /* As tyn_measure and tyn_init; TYN_E_ISA too. */

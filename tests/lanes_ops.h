@@ -166,6 +166,11 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
     v_store(f, v_from_bits(v_igather(table + 32, v_iload(k))));
     for (int32_t i = 0; i < v_n; i++)
         CHECK(memcmp(&f[i], (uint8_t *)&table[32] + k[i], 4) == 0);
+    for (int32_t i = 0; i < v_n; i++)
+        k[i] = a[i] < a[16 + i] ? k[i] : 2000000000;
+    v_store(f, v_from_bits(v_igather_where(table + 32, v_iload(k), m)));
+    for (int32_t i = 0; i < v_n; i++)
+        CHECK(a[i] < a[16 + i] ? memcmp(&f[i], (uint8_t *)&table[32] + k[i], 4) == 0 : tyni_float_bits(f[i]) == 0);
     /* bytes and words, both ways; nothing beyond */
     memset(bytes, 0x5a, sizeof bytes);
     memset(words, 0x5a, sizeof words);
@@ -205,6 +210,9 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
         CHECK((v_word(m) >> i & 1u) == (uint32_t)(a[i] < a[16 + i]));
     }
     CHECK(memcmp(f + v_n, a + v_n, sizeof f - 4 * v_n) == 0);
+    memcpy(rgb, a, 4 * 48);
+    v_istore_where(rgb, m, v_bits(v_load(a + 32)));
+    CHECK(memcmp(rgb, f, 4 * 48) == 0);
     CHECK(v_any(m) == (v_word(m) != 0) && v_none(m) == !v_any(m) && v_all(m) == (v_word(m) == (1u << v_n) - 1u));
     for (int32_t n = -2; n < 20; n++)
         CHECK(v_word(v_first(n)) == (1u << tyni_clampi(n, 0, v_n)) - 1u);

@@ -81,16 +81,16 @@ static void test_ops(int32_t isa)
         memset(floats, 0x11, sizeof floats);
         memset(bits, 0x11, sizeof bits);
         tyni_scalar_test_numbers(n.a, n.b, n.small, floats[0]);
-        TYNI_LANES_PICK(isa, test_numbers)(n.a, n.b, n.small, floats[1]);
+        TYNI_LANES_CALL(isa, test_numbers, (n.a, n.b, n.small, floats[1]));
         for (int i = 0; i < NUMBERS * OPS_COUNT; i++)
             wrong = same_number(floats[0][i], floats[1][i]) ? wrong : i / OPS_COUNT;
         CHECK_NEAR(wrong, -1, 0); /* else the number of an operation in lanes_ops.h */
         tyni_scalar_test_bits(n.a, n.b, n.in_range, n.ia, n.ib, bits[0]);
-        TYNI_LANES_PICK(isa, test_bits)(n.a, n.b, n.in_range, n.ia, n.ib, bits[1]);
+        TYNI_LANES_CALL(isa, test_bits, (n.a, n.b, n.in_range, n.ia, n.ib, bits[1]));
         for (int i = 0; i < BITS * OPS_COUNT; i++)
             wrong = bits[0][i] == bits[1][i] ? wrong : i / OPS_COUNT;
         CHECK_NEAR(wrong, -1, 0);
-        TYNI_LANES_PICK(isa, test_whole)(n.a, n.ia);
+        TYNI_LANES_CALL(isa, test_whole, (n.a, n.ia));
     }
 }
 
@@ -132,7 +132,7 @@ static void test_memory(int32_t isa)
     else
         for (int round = 0; round < 10; round++)
             for (int32_t n = -3; n <= 19; n++)
-                TYNI_LANES_PICK(isa, test_memory)(end, n);
+                TYNI_LANES_CALL(isa, test_memory, (end, n));
     mprotect(end, page, PROT_READ | PROT_WRITE);
     free(block);
 }
@@ -149,7 +149,7 @@ static void test_words(int32_t isa)
             t[i] = (uint16_t)(test_random() % 3 ? test_random() : test_random() % 2 ? position : extreme[test_random() % 7]);
             word |= (uint32_t)(position < t[i]) << i;
         }
-        CHECK(TYNI_LANES_PICK(isa, test_word)(t, position) == word);
+        CHECK(TYNI_LANES_CALL(isa, test_word, (t, position)) == word);
     }
 }
 

@@ -182,6 +182,10 @@ TYNI_AVX2_OP void tyni_avx2_istore(void *p, __m256i x)
 {
     _mm256_storeu_si256((__m256i *)p, x);
 }
+TYNI_AVX2_OP void tyni_avx2_istore_where(void *p, __m256i m, __m256i x)
+{
+    _mm256_maskstore_epi32((int *)p, m, x);
+}
 TYNI_AVX2_OP __m256i tyni_avx2_iload_n(const void *p, int32_t n)
 {
     return _mm256_maskload_epi32((const int *)p, tyni_avx2_first(n));
@@ -231,6 +235,10 @@ TYNI_AVX2_OP __m256i tyni_avx2_igather(const void *base, __m256i bytes)
 TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 {
     return _mm256_i32gather_ps(base, index, 4);
+}
+TYNI_AVX2_OP __m256i tyni_avx2_igather_where(const void *base, __m256i bytes, __m256i m)
+{
+    return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), (const int *)base, bytes, m, 1);
 }
 /* SSE2's shuffles in both halves, which then change places. */
 TYNI_AVX2_OP void tyni_avx2_store_rgb(float *p, __m256 r, __m256 g, __m256 b)

@@ -195,6 +195,10 @@ TYNI_AVX512_OP void tyni_avx512_istore(void *p, __m512i x)
 {
     _mm512_storeu_si512(p, x);
 }
+TYNI_AVX512_OP void tyni_avx512_istore_where(void *p, __mmask16 m, __m512i x)
+{
+    _mm512_mask_storeu_epi32(p, m, x);
+}
 TYNI_AVX512_OP __m512i tyni_avx512_iload_n(const void *p, int32_t n)
 {
     return _mm512_maskz_loadu_epi32(tyni_avx512_first(n), p);
@@ -226,6 +230,10 @@ TYNI_AVX512_OP __m512i tyni_avx512_igather(const void *base, __m512i bytes)
 TYNI_AVX512_OP __m512 tyni_avx512_gather(const float *base, __m512i index)
 {
     return _mm512_i32gather_ps(index, base, 4);
+}
+TYNI_AVX512_OP __m512i tyni_avx512_igather_where(const void *base, __m512i bytes, __mmask16 m)
+{
+    return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), m, bytes, base, 1);
 }
 TYNI_AVX512_OP void tyni_avx512_store_rgb(float *p, __m512 r, __m512 g, __m512 b)
 {

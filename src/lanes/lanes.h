@@ -5,7 +5,7 @@
  *     #define TYNI_KERNEL "raster/span.h"
  *     #include "lanes/each.h"
  *
- * and calls TYNI_LANES_PICK(isa, raster_span)(...). In the kernel a function that is called from outside is
+ * and calls TYNI_LANES_CALL(isa, raster_span, (...)). In the kernel a function that is called from outside is
  *
  *     static TYNI_V_TARGET void TYNI_V(raster_span)(float *p, int32_t count) {...}
  *
@@ -43,14 +43,18 @@
  *     v_load(p) v_store(p, x)            floats
  *     v_iload(p) v_istore(p, x)          32-bit words, at any address
  *     v_load_u8 v_load_u16 v_store_u8 v_store_u16    between bytes or words and v_int: zero extended; the low bits stored
- *     ..._n(p, n), ..._n(p, x, n)        of all these the first n lanes alone, any n: others load as 0, their memory is not
- * touched v_store_where(p, m, x)             floats where m; may write the old values back elsewhere, so that all v_n must be
- * writable v_gather(base, index)              floats base[index]; all lanes are read v_igather(base, bytes)             32-bit
- * words at base + bytes, at any address v_store_rgb(p, r, g, b) v_load_rgb(p, &r, &g, &b)    3 v_n floats, r g b r g b ...;
- * v_store_rgb_n(p, r, g, b, n) v_store_rgba8(p, r, g, b, a)       4 v_n bytes out of the low 8 bits of v_ints;
- * v_store_rgba8_n(p, r, g, b, a, n) v_above16(t, position)             a word of 32 bits from 32 uint16_t: bit i is position <
- * t[i]; position is 0 .. 65535 Over lanes: v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums: the
- * same sum, in one order, on every ISA v_hmin(x) v_hmax(x)                no NaN; which zero of two is open v_isum(x)
+ *     ..._n(p, n), ..._n(p, x, n)        the first n lanes alone, any n: others load as 0, their memory is not touched
+ *     v_store_where v_istore_where(p, m, x)    where m; elsewhere the old values may be written back: all must be writable
+ *     v_gather(base, index)              floats base[index]; all lanes are read
+ *     v_igather(base, bytes)             32-bit words at base + bytes, at any address
+ *     v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything
+ *     v_store_rgb(p, r, g, b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b)
+ *     v_store_rgba8(p, r, g, b, a)       4 v_n bytes out of the low 8 bits of v_ints; v_store_rgba8_n(p, r, g, b, a, n)
+ *     v_above16(t, position)             32 bits from 32 uint16_t: bit i is position < t[i]; position is 0 .. 65535
+ * Over lanes:
+ *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
+ *     v_hmin(x) v_hmax(x)                no NaN; which zero of two is open
+ *     v_isum(x)
  */
 #ifndef TYNI_LANES_H
 #define TYNI_LANES_H
@@ -135,6 +139,7 @@
 #define v_load_n TYNI_V(load_n)
 #define v_store_n TYNI_V(store_n)
 #define v_store_where TYNI_V(store_where)
+#define v_istore_where TYNI_V(istore_where)
 #define v_iload TYNI_V(iload)
 #define v_istore TYNI_V(istore)
 #define v_iload_n TYNI_V(iload_n)
@@ -145,6 +150,7 @@
 #define v_store_u16 TYNI_V(store_u16)
 #define v_gather TYNI_V(gather)
 #define v_igather TYNI_V(igather)
+#define v_igather_where TYNI_V(igather_where)
 #define v_store_rgb TYNI_V(store_rgb)
 #define v_load_rgb TYNI_V(load_rgb)
 #define v_above16 TYNI_V(above16)
@@ -177,19 +183,22 @@
 #define TYNI_KERNEL "lanes/derived.h"
 #include "lanes/each.h"
 
-/* The function of a kernel for an ISA that was picked. */
+/* Calls a kernel's function for an ISA that was picked: TYNI_LANES_CALL(isa, raster_span, (p, count)). Direct calls, so that
+ * whoever follows the calls (compilers, the proof of stack) sees them. */
 #ifdef TYNI_LANES_X86
-#define TYNI_LANES_PICK(isa, name)                                                                                             \
-    ((isa) == TYN_ISA_AVX512 ? tyni_avx512_##name                                                                              \
-     : (isa) == TYN_ISA_AVX2 ? tyni_avx2_##name                                                                                \
-     : (isa) == TYN_ISA_SSE2 ? tyni_sse2_##name                                                                                \
-                             : tyni_scalar_##name)
+#define TYNI_LANES_CALL(isa, name, arguments)                                                                                  \
+    ((isa) == TYN_ISA_AVX512 ? tyni_avx512_##name arguments                                                                    \
+     : (isa) == TYN_ISA_AVX2 ? tyni_avx2_##name arguments                                                                      \
+     : (isa) == TYN_ISA_SSE2 ? tyni_sse2_##name arguments                                                                      \
+                             : tyni_scalar_##name arguments)
 #elif defined(TYNI_LANES_NEON)
-#define TYNI_LANES_PICK(isa, name) ((isa) == TYN_ISA_NEON ? tyni_neon_##name : tyni_scalar_##name)
+#define TYNI_LANES_CALL(isa, name, arguments)                                                                                  \
+    ((isa) == TYN_ISA_NEON ? tyni_neon_##name arguments : tyni_scalar_##name arguments)
 #elif defined(TYNI_LANES_WASM)
-#define TYNI_LANES_PICK(isa, name) ((isa) == TYN_ISA_WASM ? tyni_wasm_##name : tyni_scalar_##name)
+#define TYNI_LANES_CALL(isa, name, arguments)                                                                                  \
+    ((isa) == TYN_ISA_WASM ? tyni_wasm_##name arguments : tyni_scalar_##name arguments)
 #else
-#define TYNI_LANES_PICK(isa, name) ((void)(isa), tyni_scalar_##name)
+#define TYNI_LANES_CALL(isa, name, arguments) ((void)(isa), tyni_scalar_##name arguments)
 #endif
 
 /* From a config's isa to one that runs here. TYN_E_CONFIG for a number that is none, TYN_E_ISA for one that is not there. */

@@ -185,6 +185,10 @@ TYNI_NEON_OP void tyni_neon_istore(void *p, int32x4_t x)
 {
     vst1q_u8((uint8_t *)p, vreinterpretq_u8_s32(x));
 }
+TYNI_NEON_OP void tyni_neon_istore_where(void *p, uint32x4_t m, int32x4_t x)
+{
+    tyni_neon_istore(p, vbslq_s32(m, x, tyni_neon_iload(p)));
+}
 TYNI_NEON_OP int32x4_t tyni_neon_iload_n(const void *p, int32_t n)
 {
     int32_t lane[4] = {0, 0, 0, 0};
@@ -253,6 +257,17 @@ TYNI_NEON_OP float32x4_t tyni_neon_gather(const float *base, int32x4_t index)
     for (int32_t i = 0; i < 4; i++)
         x[i] = base[at[i]];
     return vld1q_f32(x);
+}
+TYNI_NEON_OP int32x4_t tyni_neon_igather_where(const void *base, int32x4_t bytes, uint32x4_t m)
+{
+    int32_t at[4], x[4] = {0, 0, 0, 0};
+    uint32_t word = tyni_neon_word(m);
+    tyni_neon_istore(at, bytes);
+    for (; word; word &= word - 1) {
+        const int32_t i = tyni_ctz32(word);
+        memcpy(&x[i], (const uint8_t *)base + at[i], 4);
+    }
+    return tyni_neon_iload(x);
 }
 TYNI_NEON_OP void tyni_neon_store_rgb(float *p, float32x4_t r, float32x4_t g, float32x4_t b)
 {

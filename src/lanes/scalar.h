@@ -188,6 +188,11 @@ TYNI_SCALAR_OP void tyni_scalar_store_where(float *p, uint32_t m, float x)
     if (m)
         *p = x;
 }
+TYNI_SCALAR_OP void tyni_scalar_istore_where(void *p, uint32_t m, int32_t x)
+{
+    if (m)
+        memcpy(p, &x, sizeof x);
+}
 TYNI_SCALAR_OP int32_t tyni_scalar_iload(const void *p)
 {
     int32_t x;
@@ -230,6 +235,10 @@ TYNI_SCALAR_OP float tyni_scalar_gather(const float *base, int32_t index)
 TYNI_SCALAR_OP int32_t tyni_scalar_igather(const void *base, int32_t bytes)
 {
     return tyni_scalar_iload((const uint8_t *)base + bytes);
+}
+TYNI_SCALAR_OP int32_t tyni_scalar_igather_where(const void *base, int32_t bytes, uint32_t m)
+{
+    return m ? tyni_scalar_igather(base, bytes) : 0;
 }
 TYNI_SCALAR_OP void tyni_scalar_store_rgb(float *p, float r, float g, float b)
 {

@@ -184,6 +184,10 @@ TYNI_SSE2_OP void tyni_sse2_istore(void *p, __m128i x)
 {
     _mm_storeu_si128((__m128i *)p, x);
 }
+TYNI_SSE2_OP void tyni_sse2_istore_where(void *p, __m128i m, __m128i x)
+{
+    tyni_sse2_istore(p, tyni_sse2_iselect(m, x, tyni_sse2_iload(p)));
+}
 TYNI_SSE2_OP __m128i tyni_sse2_iload_n(const void *p, int32_t n)
 {
     int32_t lane[4] = {0, 0, 0, 0};
@@ -256,6 +260,17 @@ TYNI_SSE2_OP __m128 tyni_sse2_gather(const float *base, __m128i index)
     int32_t at[4];
     tyni_sse2_istore(at, index);
     return _mm_setr_ps(base[at[0]], base[at[1]], base[at[2]], base[at[3]]);
+}
+TYNI_SSE2_OP __m128i tyni_sse2_igather_where(const void *base, __m128i bytes, __m128i m)
+{
+    int32_t at[4], x[4] = {0, 0, 0, 0};
+    uint32_t word = tyni_sse2_word(m);
+    tyni_sse2_istore(at, bytes);
+    for (; word; word &= word - 1) {
+        const int32_t i = tyni_ctz32(word);
+        memcpy(&x[i], (const uint8_t *)base + at[i], 4);
+    }
+    return tyni_sse2_iload(x);
 }
 TYNI_SSE2_OP void tyni_sse2_store_rgb(float *p, __m128 r, __m128 g, __m128 b)
 {

@@ -182,6 +182,10 @@ TYNI_WASM_OP void tyni_wasm_istore(void *p, v128_t x)
 {
     wasm_v128_store(p, x);
 }
+TYNI_WASM_OP void tyni_wasm_istore_where(void *p, v128_t m, v128_t x)
+{
+    wasm_v128_store(p, wasm_v128_bitselect(x, wasm_v128_load(p), m));
+}
 TYNI_WASM_OP v128_t tyni_wasm_iload_n(const void *p, int32_t n)
 {
     int32_t lane[4] = {0, 0, 0, 0};
@@ -246,6 +250,17 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather(const float *base, v128_t index)
     for (int32_t i = 0; i < 4; i++)
         x[i] = base[at[i]];
     return tyni_wasm_load(x);
+}
+TYNI_WASM_OP v128_t tyni_wasm_igather_where(const void *base, v128_t bytes, v128_t m)
+{
+    int32_t at[4], x[4] = {0, 0, 0, 0};
+    uint32_t word = tyni_wasm_word(m);
+    tyni_wasm_istore(at, bytes);
+    for (; word; word &= word - 1) {
+        const int32_t i = tyni_ctz32(word);
+        memcpy(&x[i], (const uint8_t *)base + at[i], 4);
+    }
+    return tyni_wasm_iload(x);
 }
 TYNI_WASM_OP void tyni_wasm_store_rgb(float *p, tyni_wasm_float r, tyni_wasm_float g, tyni_wasm_float b)
 {
