@@ -41,18 +41,19 @@ extern "C" {
 
 typedef enum tyn_status {
     TYN_OK = 0,
-    TYN_E_NULL = -1,     /* a required pointer is NULL */
-    TYN_E_CONFIG = -2,   /* a field of a config is outside its range */
-    TYN_E_MEMORY = -3,   /* the block is smaller than ..._measure says */
-    TYN_E_ALIGN = -4,    /* the block is not aligned to TYN_ALIGNMENT, or pixels are not aligned to their components */
-    TYN_E_IMAGE = -5,    /* an image has a wrong size, format, stride or coding */
-    TYN_E_CAMERA = -6,   /* camera: not finite, axes not orthonormal, empty window, or not 0 < near < far */
-    TYN_E_LIGHT = -7,    /* light: not finite, colour < 0, direction not of length 1, angle or shadow map out of range */
-    TYN_E_MEDIUM = -8,   /* medium: not finite, coefficient < 0, or g outside -1 .. 1; or a frame's art control out of range */
-    TYN_E_MESH = -9,     /* mesh: index out of range, or a material out of range */
-    TYN_E_DISPLAY = -10, /* display: not finite, exposure < 0, or an unknown tone curve */
-    TYN_E_LIMIT = -11,   /* more lights, maps or media, or a larger image or shadow map, than the config has room for */
-    TYN_E_EXECUTOR = -12 /* the executor did not run each job once, or used a worker number out of range; output undefined */
+    TYN_E_NULL = -1,      /* a required pointer is NULL */
+    TYN_E_CONFIG = -2,    /* a field of a config is outside its range */
+    TYN_E_MEMORY = -3,    /* the block is smaller than ..._measure says */
+    TYN_E_ALIGN = -4,     /* the block is not aligned to TYN_ALIGNMENT, or pixels are not aligned to their components */
+    TYN_E_IMAGE = -5,     /* an image has a wrong size, format, stride or coding */
+    TYN_E_CAMERA = -6,    /* camera: not finite, axes not orthonormal, empty window, or not 0 < near < far */
+    TYN_E_LIGHT = -7,     /* light: not finite, colour < 0, direction not of length 1, angle or shadow map out of range */
+    TYN_E_MEDIUM = -8,    /* medium: not finite, coefficient < 0, or g outside -1 .. 1; or a frame's art control out of range */
+    TYN_E_MESH = -9,      /* mesh: index out of range, or a material out of range */
+    TYN_E_DISPLAY = -10,  /* display: not finite, exposure < 0, or an unknown tone curve */
+    TYN_E_LIMIT = -11,    /* more lights, maps or media, or a larger image or shadow map, than the config has room for */
+    TYN_E_EXECUTOR = -12, /* the executor did not run each job once, or used a worker number out of range; output undefined */
+    TYN_E_ISA = -13       /* none of the instruction sets that the config allows is there */
 } tyn_status;
 
 /* The name of a status as a constant string, such as "TYN_E_CAMERA"; "TYN_E_UNKNOWN" for a number that is none. */
@@ -78,6 +79,26 @@ typedef struct tyn_executor {
 
 /* A clock for the statistics: nanoseconds from any fixed origin. NULL: no times are taken. */
 typedef uint64_t (*tyn_clock)(void *context);
+
+/* ---- instruction sets ---------------------------------------------------------------------------------------------- */
+
+/* Vector units that kernels are compiled for. The best that the machine has is picked at init; all give the same bytes, so
+ * that this is for tests, for timing, and around a broken one. The bits form a mask, later ones are better. */
+typedef enum tyn_isa {
+    TYN_ISA_SCALAR = 1, /* plain C; always there */
+    TYN_ISA_SSE2 = 2,
+    TYN_ISA_AVX2 = 4,
+    TYN_ISA_AVX512 = 8, /* F, BW, DQ and VL */
+    TYN_ISA_NEON = 16,  /* AArch64 */
+    TYN_ISA_WASM = 32   /* SIMD128 */
+} tyn_isa;
+
+/* Masks of tyn_isa: what is compiled in, and what of it this machine can run. */
+int32_t tyn_isa_built(void);
+int32_t tyn_isa_available(void);
+
+/* "avx2" for TYN_ISA_AVX2 and so on; "unknown" for what is not one of them. */
+const char *tyn_isa_name(int32_t isa);
 
 /* ---- images -------------------------------------------------------------------------------------------------------- */
 
@@ -392,6 +413,7 @@ typedef struct tyn_config {
     int32_t textured;  /* not 0: room for lights with textures or tints; 2 more bytes a sample */
     int32_t lights;    /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
     int32_t workers;   /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
+    int32_t isa; /* mask of tyn_isa that may be used, the best of them is; 0: any. TYN_E_ISA from tyn_init if none is there */
 } tyn_config;
 
 #define TYN_MAX_LIGHTS 16
@@ -607,6 +629,7 @@ typedef struct tyn_raster_config {
     int32_t height;
     int32_t batch;   /* triangles that go through together, 64 .. 65536; 0: 2048 */
     int32_t workers; /* 1 .. TYN_MAX_WORKERS; 0: 1 */
+    int32_t isa;     /* mask of tyn_isa, as in tyn_config */
 } tyn_raster_config;
 
 typedef struct tyn_raster tyn_raster;
@@ -614,10 +637,11 @@ typedef struct tyn_raster tyn_raster;
 /* What tyn_raster_measure gives, as a constant expression for a static block. Arguments as in tyn_raster_config, no zeros. */
 #define TYN_RASTER_MEMORY(width, height, batch, workers)                                                                       \
     (0 * (size_t)(width) * (size_t)(height) + TYN_RASTER_BYTES + TYNI_BYTES(batch, 128) + TYNI_BYTES(batch, 4) +               \
-     TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64))
+     TYNI_BYTES(((size_t)(batch) + 63) / 64, 24) + 2 * TYNI_BYTES(workers, 64) + TYNI_BYTES(workers, 10240) +                  \
+     TYNI_BYTES(workers, 1088))
 #define TYN_RASTER_BYTES 23680
 
-/* As tyn_measure and tyn_init. */
+/* As tyn_measure and tyn_init; TYN_E_ISA too. */
 tyn_status tyn_raster_measure(const tyn_raster_config *config, size_t *bytes);
 tyn_status tyn_raster_init(tyn_raster **raster, const tyn_raster_config *config, void *memory, size_t bytes);
 

@@ -21,6 +21,13 @@
 #define TYNI_ASSERT(condition) ((void)0)
 #endif
 
+/* Of rare work whose stack the caller should not carry. */
+#if defined(__GNUC__)
+#define TYNI_NOINLINE __attribute__((noinline))
+#else
+#define TYNI_NOINLINE
+#endif
+
 #define TYNI_PI 3.14159265358979f
 
 static inline int32_t tyni_mini(int32_t a, int32_t b)

@@ -260,6 +260,8 @@ const char *tyn_status_name(tyn_status status)
         return "TYN_E_DISPLAY";
     case TYN_E_LIMIT:
         return "TYN_E_LIMIT";
+    case TYN_E_ISA:
+        return "TYN_E_ISA";
     case TYN_E_EXECUTOR:
         return "TYN_E_EXECUTOR";
     }

@@ -62,7 +62,8 @@ tyn_status tyni_config_fill(tyn_config *c)
     c->workers = c->workers ? c->workers : preset.workers;
     if (outside(c->slices, 8, 65536) || outside(c->samples, 2, 65536) || outside(c->initial_step, 1, 64) ||
         (c->initial_step & (c->initial_step - 1)) || outside(c->shadow_size, 1, TYN_MAX_SHADOW) || outside(c->steps, 1, 4096) ||
-        outside(c->maps, 1, TYN_MAX_MAPS) || outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS))
+        outside(c->maps, 1, TYN_MAX_MAPS) || outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS) ||
+        outside(c->isa, 0, 2 * TYN_ISA_WASM - 1))
         return TYN_E_CONFIG;
     if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
         return TYN_E_CONFIG;

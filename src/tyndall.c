@@ -10,6 +10,7 @@
 #include "door.h"
 #include "frame.h"
 #include "jobs.h"
+#include "lanes/lanes.h"
 #include "slide.h"
 
 /* A context takes as much room as TYN_MEMORY says. */
@@ -58,6 +59,9 @@ tyn_status tyn_init(tyn_context **context, const tyn_config *config, void *memor
         return TYN_E_MEMORY;
     own = *config;
     tyni_config_fill(&own);
+    status = tyni_lanes_choose(own.isa, &own.isa);
+    if (status != TYN_OK)
+        return status;
     memset(c, 0, sizeof *c);
     c->config = own;
     arena.block = memory;

@@ -79,7 +79,7 @@ rank() { # of a file below src/
 }
 
 includes() { # of a file, resolved to src/...
-    sed -n 's/^[ \t]*#[ \t]*include[ \t]*"\([^"]*\)".*/\1/p' "$1" | while read -r name; do
+    sed -n -e 's/^[ \t]*#[ \t]*include[ \t]*"\([^"]*\)".*/\1/p' -e 's/^#define TYNI_KERNEL "\([^"]*\)".*/\1/p' "$1" | while read -r name; do
         [ "$name" = tyndall.h ] && continue
         dir=${1%/*}
         path=$(echo "$dir/$name" | sed -e 's|[a-z0-9_]*/\.\./||')

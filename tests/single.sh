@@ -68,10 +68,12 @@ function guarded(file,    text, found) {
 }
 
 # The lines of a file with its headers in place, appended to unit u (0: the headers).
+# #include TYNI_KERNEL brings what TYNI_KERNEL was defined as last.
 function take(file, u,    text, name, path) {
     while ((getline text < file) > 0) {
-        if (text ~ /^[ \t]*#[ \t]*include[ \t]*"/) {
-            name = text
+        if (text ~ /^#define TYNI_KERNEL "/) kernel = text
+        if (text ~ /^[ \t]*#[ \t]*include[ \t]*("|TYNI_KERNEL)/) {
+            name = text ~ /TYNI_KERNEL/ ? kernel : text
             sub(/^[^"]*"/, "", name)
             sub(/".*/, "", name)
             path = resolve(name, file)

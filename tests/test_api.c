@@ -16,14 +16,14 @@
 
 static void test_names(void)
 {
-    static const char *const names[] = {"TYN_OK",        "TYN_E_NULL",   "TYN_E_CONFIG",  "TYN_E_MEMORY", "TYN_E_ALIGN",
-                                        "TYN_E_IMAGE",   "TYN_E_CAMERA", "TYN_E_LIGHT",   "TYN_E_MEDIUM", "TYN_E_MESH",
-                                        "TYN_E_DISPLAY", "TYN_E_LIMIT",  "TYN_E_EXECUTOR"};
+    static const char *const names[] = {"TYN_OK",        "TYN_E_NULL",   "TYN_E_CONFIG",   "TYN_E_MEMORY", "TYN_E_ALIGN",
+                                        "TYN_E_IMAGE",   "TYN_E_CAMERA", "TYN_E_LIGHT",    "TYN_E_MEDIUM", "TYN_E_MESH",
+                                        "TYN_E_DISPLAY", "TYN_E_LIMIT",  "TYN_E_EXECUTOR", "TYN_E_ISA"};
     static const int32_t bytes[] = {0, 12, 4, 4, 2, 4, 3, 6, 1, 2, 4, 0};
     TEST("names, version, bytes of a pixel");
-    for (int i = 0; i < 13; i++)
+    for (int i = 0; i < 14; i++)
         CHECK(strcmp(tyn_status_name((tyn_status)-i), names[i]) == 0);
-    CHECK(strcmp(tyn_status_name((tyn_status)-13), "TYN_E_UNKNOWN") == 0);
+    CHECK(strcmp(tyn_status_name((tyn_status)-14), "TYN_E_UNKNOWN") == 0);
     CHECK(strcmp(tyn_status_name((tyn_status)1), "TYN_E_UNKNOWN") == 0);
     CHECK(strcmp(tyn_status_name((tyn_status)-1000000), "TYN_E_UNKNOWN") == 0);
     CHECK(strcmp(tyn_version(), TYN_VERSION) == 0);

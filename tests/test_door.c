@@ -514,7 +514,7 @@ static void test_windows(void)
 /* Draws the rig's scene into maps. */
 static void draw(const rig *r, tyn_shadow *maps, int count)
 {
-    tyn_raster_config config = {MAP, MAP, 0, 0};
+    tyn_raster_config config = {MAP, MAP, 0, 0, 0};
     tyn_raster *raster = NULL;
     size_t bytes = 0;
     void *block;
@@ -658,7 +658,7 @@ static void test_surfaces(void)
     TEST("surfaces under maps of every format and coding");
     for (int n = 0; n < 3; n++) {
         rig *r = rig_stock(names[n], W, H, MAP);
-        tyn_raster_config config = {W, H, 0, 0};
+        tyn_raster_config config = {W, H, 0, 0, 0};
         tyn_raster *raster = NULL;
         tyn_light light = r->light[0];
         tyn_shadow more[5];

@@ -421,7 +421,7 @@ static void test_cascade_picture(void)
         rig *r = rig_stock("sun off the left", W, H, 2048), *coarse = rig_stock("sun off the left", W, H, SIZE);
         tyn_config config = rig_config(r, TYN_METHOD_MARCH, TYN_RAYS_WORDS);
         tyn_frame frame = rig_frame(r);
-        tyn_raster_config raster_config = {SIZE, SIZE, 0, 0};
+        tyn_raster_config raster_config = {SIZE, SIZE, 0, 0, 0};
         tyn_raster *raster = NULL;
         tyn_shadow map[MAPS];
         tyn_light light = r->light[0];

@@ -32,7 +32,7 @@ static void test_memory(void)
             int32_t width, height, batch, workers;
         } wrong[9] = {{0, 1, 0, 0},  {1, 0, 0, 0},     {32769, 1, 0, 0}, {1, 32769, 0, 0}, {1, 1, 63, 0},
                       {1, 1, -1, 0}, {1, 1, 65537, 0}, {1, 1, 0, 65},    {1, 1, 0, -1}};
-        tyn_raster_config w = {wrong[i].width, wrong[i].height, wrong[i].batch, wrong[i].workers};
+        tyn_raster_config w = {wrong[i].width, wrong[i].height, wrong[i].batch, wrong[i].workers, 0};
         size_t kept = 77;
         CHECK(tyn_raster_measure(&w, &kept) == TYN_E_CONFIG && kept == 77);
         CHECK(tyn_raster_init(&raster, &w, &w, 1) == TYN_E_CONFIG && !raster);

@@ -63,7 +63,7 @@ for bad in '--size 0x9' '--size 10' '--size 10x' '--size 10x10x10' '--size 32769
     '--shadow-size 16385' '--preset best' '--threads 0' '--threads 65' '--threads two' '--exposure 0' '--exposure -1' \
     '--exposure inf' '--debug trees' '--debug basis' '--gather ed' '--taps 2' '--taps 6' '--kernel box' '--downscale 3' \
     '--downscale 16' '--tolerance 0' '--tolerance 2' '--budget 0' '--at 3' '--at 3,' '--at -1,2' '--bases 8' '--weights average' \
-    '--rectify epipolar' '--splits 4' '--isa scalar' '--frames 1-2' '--unknown' '-x'; do
+    '--rectify epipolar' '--splits 4' '--isa mmx' '--frames 1-2' '--unknown' '-x'; do
     # shellcheck disable=SC2086
     expect "$bad" 2 "$tyndall" render good.scene -o o/a.png $bad && says "$bad is named" "${bad%% *}"
 done

@@ -6,6 +6,23 @@
 
 #include "tyndall.h"
 
+static void print_isas(const char *name, int32_t isas)
+{
+    printf("%s", name);
+    for (int32_t isa = 1; isa <= isas; isa *= 2)
+        if (isas & isa)
+            printf(" %s", tyn_isa_name(isa));
+    printf("\n");
+}
+
+static int32_t best_of(int32_t isas)
+{
+    int32_t best = 1;
+    while (isas / 2 >= best)
+        best *= 2;
+    return best;
+}
+
 int command_info(int argc, char **argv)
 {
     static const struct {
@@ -21,8 +38,9 @@ int command_info(int argc, char **argv)
         return 2;
     }
     printf("version %s\n", tyn_version());
-    printf("isa_built scalar\n");
-    printf("isa_picked scalar\n");
+    print_isas("isa_built", tyn_isa_built());
+    print_isas("isa_available", tyn_isa_available());
+    print_isas("isa_picked", best_of(tyn_isa_available()));
     printf("threads %ld\n", (long)pool_default_workers());
     for (size_t p = 0; p < sizeof presets / sizeof *presets; p++)
         for (size_t i = 0; i < 3; i++) {

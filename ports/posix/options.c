@@ -33,6 +33,14 @@ static const word debugs[] = {{"lines", TYN_DEBUG_LINES},     {"samples", TYN_DE
                               {"tree", TYN_DEBUG_TREE},       {"rejected", TYN_DEBUG_REJECTED},
                               {"outside", TYN_DEBUG_OUTSIDE}, {NULL, 0}};
 
+static const word isas[] = {{"scalar", TYN_ISA_SCALAR},
+                            {"sse2", TYN_ISA_SSE2},
+                            {"avx2", TYN_ISA_AVX2},
+                            {"avx512", TYN_ISA_AVX512},
+                            {"neon", TYN_ISA_NEON},
+                            {"wasm", TYN_ISA_WASM},
+                            {NULL, 0}};
+
 /* Options that set one number of the settings. */
 typedef struct setting {
     const char *name;
@@ -76,11 +84,12 @@ static const setting settings[] = {WORD_AT("--method", method, methods),
                                    COUNT_AT("--shadow-size", shadow_size, 1, TYN_MAX_SHADOW),
                                    WORD_AT("--preset", preset, presets),
                                    NUMBER_AT("--exposure", exposure, 3.4e38f),
-                                   WORD_AT("--debug", debug, debugs)};
+                                   WORD_AT("--debug", debug, debugs),
+                                   WORD_AT("--isa", isa, isas)};
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
 /* In the command line's plan, not in the library yet. */
-static const char *const later[] = {"--bases", "--weights", "--rectify", "--splits", "--isa", "--frames", NULL};
+static const char *const later[] = {"--bases", "--weights", "--rectify", "--splits", "--frames", NULL};
 
 static int bad(const char *option, const char *value, const char *why)
 {
@@ -207,7 +216,13 @@ static int take(options *o, const char *name, const char *value)
         return point_option(value, r);
     if (strcmp(name, "--threads") == 0)
         return take_count(&count_of_threads, value, &o->threads);
-    return s ? take_setting(s, value, r) : bad(name, NULL, "unknown option");
+    if (!s)
+        return bad(name, NULL, "unknown option");
+    if (take_setting(s, value, r) != 0)
+        return -1;
+    if (r->isa && !(tyn_isa_available() & (r->isa - 1)))
+        return bad(name, value, tyn_isa_built() & (r->isa - 1) ? "this machine lacks it" : "is not built in");
+    return 0;
 }
 
 static int is_in(const char *name, const char *const *list)
@@ -325,28 +340,30 @@ void options_help(options_command command)
         help_of_post();
     else
         help_of_render();
-    printf("  -o FILE            .png, .ppm (display, 8 bit), .pfm (linear radiance), .rgb565, .rgba (raw, no header;\n"
-           "                     16 bit values low byte first)\n"
-           "  --scatter F.pfm    also the scattered light alone\n"
-           "  --preset P         handheld, balanced, quality (default), reference\n"
-           "  --method M         epipolar (default), march (every pixel), subsample, none\n"
-           "  --rays R           words (default), tree, sweep, columns: the same picture; steps: fixed steps, see --steps\n"
-           "  --steps N          per ray, 1 .. 4096\n"
-           "  --gather G         shear (default), ivb, ed10: lines on the screen, and pixels from them\n"
-           "  --taps N           of ed10, on each line, 3 .. 5\n"
-           "  --kernel K         of ed10: gaussian (default), shepard, threshold\n"
-           "  --slices N         epipolar slices, 8 .. 65536\n"
-           "  --samples N        along a slice, 2 .. 65536\n"
-           "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
-           "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
-           "  --tolerance T      refinement on light: error that rays between rays are set for, above 0, at most 1 (never)\n"
-           "  --downscale F      1, 2, 4, 8: computed for each such row and column, then scaled up\n"
-           "  --budget N         of --method subsample: rays, about\n"
-           "  --threads N        1 .. 64; default: the machine's\n"
-           "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
-           "  --debug V          draw lines, samples, breaks, sources, scatter, row, tree, rejected or outside instead\n"
-           "  --at X,Y           of --debug row and tree: the pixel whose slice and ray are drawn; default: the middle\n"
-           "  --stats            print one \"name value\" a line\n"
-           "\n"
-           "A file appears when it is complete, or not at all. Exit status: 0 complete, 1 bad input, 2 bad usage.\n");
+    printf(
+        "  -o FILE            .png, .ppm (display, 8 bit), .pfm (linear radiance), .rgb565, .rgba (raw, no header;\n"
+        "                     16 bit values low byte first)\n"
+        "  --scatter F.pfm    also the scattered light alone\n"
+        "  --preset P         handheld, balanced, quality (default), reference\n"
+        "  --method M         epipolar (default), march (every pixel), subsample, none\n"
+        "  --rays R           words (default), tree, sweep, columns: the same picture; steps: fixed steps, see --steps\n"
+        "  --steps N          per ray, 1 .. 4096\n"
+        "  --gather G         shear (default), ivb, ed10: lines on the screen, and pixels from them\n"
+        "  --taps N           of ed10, on each line, 3 .. 5\n"
+        "  --kernel K         of ed10: gaussian (default), shepard, threshold\n"
+        "  --slices N         epipolar slices, 8 .. 65536\n"
+        "  --samples N        along a slice, 2 .. 65536\n"
+        "  --initial-step N   samples between rays, 1, 2, 4 .. 64\n"
+        "  --break T          relative jump of depth that counts as a break, above 0, at most 1\n"
+        "  --tolerance T      refinement on light: error that rays between rays are set for, above 0, at most 1 (never)\n"
+        "  --downscale F      1, 2, 4, 8: computed for each such row and column, then scaled up\n"
+        "  --budget N         of --method subsample: rays, about\n"
+        "  --threads N        1 .. 64; default: the machine's\n"
+        "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
+        "  --debug V          draw lines, samples, breaks, sources, scatter, row, tree, rejected or outside instead\n"
+        "  --at X,Y           of --debug row and tree: the pixel whose slice and ray are drawn; default: the middle\n"
+        "  --isa I            scalar, sse2, avx2, avx512, neon or wasm; default: the best there is. All give the same bytes\n"
+        "  --stats            print one \"name value\" a line\n"
+        "\n"
+        "A file appears when it is complete, or not at all. Exit status: 0 complete, 1 bad input, 2 bad usage.\n");
 }

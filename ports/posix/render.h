@@ -8,8 +8,8 @@
 
 /* Zero bytes mean the defaults: the preset's. */
 typedef struct render_settings {
-    int32_t width, height;                               /* 0: the scene's */
-    int32_t preset, method, rays, gather, kernel, debug; /* a value of the enum + 1 */
+    int32_t width, height;                                    /* 0: the scene's */
+    int32_t preset, method, rays, gather, kernel, debug, isa; /* a value of the enum + 1 */
     int32_t steps, slices, samples, initial_step, shadow_size;
     int32_t taps, downscale, budget;
     float break_threshold, tolerance;

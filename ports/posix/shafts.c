@@ -47,6 +47,7 @@ tyn_status shafts_config(tyn_config *c, const render_settings *r, int32_t width,
         c->break_threshold = r->break_threshold;
     if (r->tolerance > 0.0f)
         c->tolerance = r->tolerance;
+    c->isa = r->isa ? r->isa - 1 : 0;
     if (c->shadow_size == 0)
         c->shadow_size = DEFAULT_SHADOW;
     return TYN_OK;
@@ -76,6 +77,7 @@ int shafts_raster(tyn_raster **raster, const tyn_config *config, void **block, s
     c.width = config->width > config->shadow_size ? config->width : config->shadow_size;
     c.height = config->height > config->shadow_size ? config->height : config->shadow_size;
     c.workers = config->workers;
+    c.isa = config->isa;
     status = tyn_raster_measure(&c, bytes);
     if (status != TYN_OK)
         return fail(error, name, "rasterizer", status);

@@ -4,6 +4,7 @@
 #include "arena.h"
 #include "check.h"
 #include "jobs.h"
+#include "lanes/lanes.h"
 #include "medium.h"
 #include "vec.h"
 
@@ -13,6 +14,9 @@ typedef char size_of_piece[sizeof(tyni_raster_piece) == 128 ? 1 : -1];
 typedef char size_of_chunk[sizeof(tyni_raster_chunk) == 24 ? 1 : -1];
 typedef char size_of_tally[sizeof(tyni_raster_tally) == 64 ? 1 : -1];
 typedef char size_of_count[sizeof(tyni_jobs_count) == 64 ? 1 : -1];
+typedef char size_of_face[TYNI_RASTER_FACES * sizeof(tyni_raster_face) == 8192 ? 1 : -1];
+typedef char size_of_slopes[TYN_MAX_LIGHTS * sizeof(tyni_raster_slopes) == 1088 ? 1 : -1];
+typedef char size_of_numbers[offsetof(tyni_raster_face, ready) == 8 + 4 * TYNI_RASTER_NUMBERS ? 1 : -1];
 typedef char size_of_lamp[sizeof(tyni_raster_lamp) <= 64 ? 1 : -1];
 typedef char size_of_slide[sizeof(tyni_slide) <= 64 ? 1 : -1];
 typedef char size_of_map[sizeof(tyni_raster_map) <= 128 ? 1 : -1];
@@ -25,7 +29,8 @@ static tyn_status resolve(tyn_raster_config *out, const tyn_raster_config *confi
     if (!out->workers)
         out->workers = 1;
     if (out->width < 1 || out->width > TYN_MAX_SIZE || out->height < 1 || out->height > TYN_MAX_SIZE || out->batch < 64 ||
-        out->batch > 65536 || out->workers < 1 || out->workers > TYN_MAX_WORKERS)
+        out->batch > 65536 || out->workers < 1 || out->workers > TYN_MAX_WORKERS || out->isa < 0 ||
+        out->isa >= 2 * TYN_ISA_WASM)
         return TYN_E_CONFIG;
     return TYN_OK;
 }
@@ -40,6 +45,9 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
     tyni_raster_chunk *chunks = tyni_arena_take(arena, (batch + TYNI_RASTER_CHUNK - 1) / TYNI_RASTER_CHUNK, sizeof *chunks);
     tyni_raster_tally *tallies = tyni_arena_take(arena, workers, sizeof *tallies);
     tyni_jobs_count *counts = tyni_arena_take(arena, workers, sizeof *counts);
+    tyni_raster_face *faces = tyni_arena_take(arena, workers, TYNI_RASTER_FACES * sizeof *faces);
+    uint8_t *groups = tyni_arena_take(arena, workers, TYNI_RASTER_GROUP);
+    tyni_raster_slopes *slopes = tyni_arena_take(arena, workers, TYN_MAX_LIGHTS * sizeof *slopes);
     tyni_raster_lamp *lamps = tyni_arena_take(arena, TYN_MAX_LIGHTS, 64);
     tyni_raster_map *maps = tyni_arena_take(arena, (size_t)TYN_MAX_LIGHTS * TYN_MAX_MAPS, 128);
     tyni_slide *slides = tyni_arena_take(arena, TYN_MAX_LIGHTS * TYNI_RASTER_SLIDES, 64);
@@ -48,11 +56,15 @@ static tyn_raster *carve(tyni_arena *arena, const tyn_raster_config *config)
         raster->height = config->height;
         raster->batch = config->batch;
         raster->workers = config->workers;
+        raster->isa = config->isa;
         raster->pieces = pieces;
         raster->rows = rows;
         raster->chunks = chunks;
         raster->tallies = tallies;
         raster->counts = counts;
+        raster->faces = faces;
+        raster->groups = groups;
+        raster->slopes = slopes;
         raster->lamps = lamps;
         raster->maps = maps;
         raster->slides = slides;
@@ -91,6 +103,9 @@ tyn_status tyn_raster_init(tyn_raster **raster, const tyn_raster_config *config,
     if (bytes < needed)
         return TYN_E_MEMORY;
     (void)resolve(&resolved, config);
+    status = tyni_lanes_choose(resolved.isa, &resolved.isa);
+    if (status != TYN_OK)
+        return status;
     *raster = carve(&arena, &resolved);
     return TYN_OK;
 }
@@ -226,10 +241,10 @@ static tyn_status shade(const tyni_raster_pass *pass, const tyn_surface *surface
     shading.pass = pass;
     shading.surface = surface;
     shading.lamps = pass->raster->lamps;
-    for (int32_t i = 0; i < surface->light_count; i++)
+    for (int32_t i = 0, number = 0; i < surface->light_count; number += 1 + surface->lights[i].more_count, i++)
         tyni_raster_set_lamp(&pass->raster->lamps[i], &pass->raster->maps[i * TYN_MAX_MAPS],
-                             &pass->raster->slides[i * TYNI_RASTER_SLIDES], &surface->lights[i], surface->camera.position,
-                             bias);
+                             &pass->raster->slides[i * TYNI_RASTER_SLIDES], &surface->lights[i], surface->camera.position, bias,
+                             number);
     tyni_medium_extinction(surface->media, surface->medium_count, shading.sigma);
     shading.hazy = shading.sigma[0] > 0.0f || shading.sigma[1] > 0.0f || shading.sigma[2] > 0.0f;
     return tyni_jobs_run(&pass->jobs, tyni_raster_shade, &shading,

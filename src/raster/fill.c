@@ -7,6 +7,8 @@
  * corner's does not. That is the top-left rule. */
 #include "raster/raster.h"
 
+#include "lanes/lanes.h"
+
 /* First pixel centre at or right of an edge, in one row: a division that is carried on row by row, quotient `x`, remainder
  * `rest`. */
 typedef struct edge {
@@ -78,61 +80,40 @@ static void advance(edge *e)
     }
 }
 
-/* A row's span, ready for the loops below: all of them are flat over x and calculate each pixel from scratch, so that neither
- * the span's ends nor the order of bands change a value. */
+/* A row's span, ready for its pixels. */
 typedef struct span {
     float *depth;
     uint8_t *colour; /* NULL: not wanted */
-    float row, dx, low, high;
-    int32_t y, from, to, x0;
+    float row, dx, low, high, nearest;
+    int32_t y, from, to, x0, width;
+    uint32_t mesh, triangle;
 } span;
 
-static float value_at(const span *s, int32_t x)
+/* What all spans of a piece share. */
+static void begin_spans(const brush *b, span *s)
 {
-    return tyni_clampf(s->dx * (float)(x - s->x0) + s->row, s->low, s->high);
+    const tyni_raster_piece *piece = b->piece;
+    s->dx = piece->plane.dx;
+    s->low = piece->low;
+    s->high = piece->high;
+    s->nearest = b->pass->nearest;
+    s->x0 = piece->plane.x0;
+    s->width = b->pass->view.width;
+    s->mesh = piece->mesh;
+    s->triangle = piece->triangle;
 }
 
-static int32_t span_shadow(const span *s)
+static void begin_row(const brush *b, span *s, int32_t y)
 {
-    float *depth = s->depth;
-    int32_t passed = 0;
-    for (int32_t x = s->from; x < s->to; x++) {
-        const float z = tyni_minf(value_at(s, x), 1.0f), old = depth[x];
-        const int pass = z > old;
-        depth[x] = pass ? z : old;
-        passed += pass;
-    }
-    return passed;
+    const tyni_raster_pass *pass = b->pass;
+    s->depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
+    s->colour = pass->kind == TYNI_RASTER_SEEN ? pass->colour + y * pass->colour_stride : NULL;
+    s->row = b->piece->plane.dy * (float)(y - b->piece->plane.y0) + b->piece->plane.value;
+    s->y = y;
 }
 
-static int32_t span_depth(const span *s, float nearest)
-{
-    float *depth = s->depth;
-    int32_t passed = 0;
-    for (int32_t x = s->from; x < s->to; x++) {
-        const float z = 1.0f / value_at(s, x), old = depth[x];
-        const int pass = (z < old) & (z >= nearest);
-        depth[x] = pass ? z : old;
-        passed += pass;
-    }
-    return passed;
-}
-
-static int32_t span_seen(const span *s, float nearest, const tyni_raster_piece *piece)
-{
-    const uint32_t seen[2] = {piece->mesh, piece->triangle};
-    float *depth = s->depth;
-    int32_t passed = 0;
-    for (int32_t x = s->from; x < s->to; x++) {
-        const float z = 1.0f / value_at(s, x);
-        if (z < depth[x] && z >= nearest) {
-            depth[x] = z;
-            memcpy(s->colour + 12 * (ptrdiff_t)x, seen, sizeof seen);
-            passed++;
-        }
-    }
-    return passed;
-}
+#define TYNI_KERNEL "raster/span.h"
+#include "lanes/each.h"
 
 static int solid(brush *b, int32_t x, int32_t y)
 {
@@ -145,71 +126,62 @@ static int solid(brush *b, int32_t x, int32_t y)
 /* With a mask, asked last: it costs most. */
 static int32_t span_cutout(const span *s, brush *b)
 {
-    const tyni_raster_pass *pass = b->pass;
-    const uint32_t seen[2] = {b->piece->mesh, b->piece->triangle};
+    const int shadow = b->pass->kind == TYNI_RASTER_SHADOW;
     int32_t passed = 0;
     for (int32_t x = s->from; x < s->to; x++) {
-        const float value = value_at(s, x);
-        if (pass->kind == TYNI_RASTER_SHADOW) {
-            const float z = tyni_minf(value, 1.0f);
-            if (!(z > s->depth[x]) || !solid(b, x, s->y))
-                continue;
-            s->depth[x] = z;
-        } else {
-            const float z = 1.0f / value;
-            if (!(z < s->depth[x] && z >= pass->nearest) || !solid(b, x, s->y))
-                continue;
-            s->depth[x] = z;
-            if (s->colour)
-                memcpy(s->colour + 12 * (ptrdiff_t)x, seen, sizeof seen);
+        const float value = tyni_clampf(s->dx * (float)(x - s->x0) + s->row, s->low, s->high), old = s->depth[x];
+        const float z = shadow ? tyni_minf(value, 1.0f) : 1.0f / value;
+        if (!(shadow ? z > old : z < old && z >= s->nearest) || !solid(b, x, s->y))
+            continue;
+        s->depth[x] = z;
+        if (s->colour) {
+            uint8_t *mark = s->colour + tyni_raster_mark_at(x);
+            memcpy(mark, &s->mesh, 4);
+            memcpy(mark + tyni_raster_mark_step(x, s->width), &s->triangle, 4);
         }
         passed++;
     }
     return passed;
 }
 
-static void fill_span(brush *b, int32_t y, int32_t from, int32_t to)
+static int cutout_rows(brush *b, edge *left, edge *right, int32_t y, int32_t end)
 {
-    const tyni_raster_pass *pass = b->pass;
-    const tyni_raster_piece *piece = b->piece;
-    span s;
-    s.depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
-    s.colour = pass->kind == TYNI_RASTER_SEEN ? pass->colour + y * pass->colour_stride : NULL;
-    s.row = piece->plane.dy * (float)(y - piece->plane.y0) + piece->plane.value;
-    s.dx = piece->plane.dx;
-    s.low = piece->low;
-    s.high = piece->high;
-    s.y = y;
-    s.from = from;
-    s.to = to;
-    s.x0 = piece->plane.x0;
-    if (b->masked)
-        b->pixels += span_cutout(&s, b);
-    else if (pass->kind == TYNI_RASTER_SHADOW)
-        b->pixels += span_shadow(&s);
-    else if (s.colour)
-        b->pixels += span_seen(&s, pass->nearest, piece);
-    else
-        b->pixels += span_depth(&s, pass->nearest);
-}
-
-/* Rows y .. end - 1 between two edges. */
-static int fill_rows(brush *b, edge *left, edge *right, int32_t y, int32_t end)
-{
-    const int32_t width = b->pass->view.width;
     int covered = 0;
+    span s;
+    begin_spans(b, &s);
     for (; y < end; y++) {
-        const int32_t from = tyni_maxi(left->x, 0), to = tyni_mini(right->x, width);
-        if (from < to) {
+        s.from = tyni_maxi(left->x, 0);
+        s.to = tyni_mini(right->x, s.width);
+        if (s.from < s.to) {
             covered = 1;
-            if (b->probe)
-                return 1;
-            fill_span(b, y, from, to);
+            begin_row(b, &s, y);
+            b->pixels += span_cutout(&s, b);
         }
         advance(left);
         advance(right);
     }
     return covered;
+}
+
+/* Whether there is a pixel between two edges in rows y .. end - 1. */
+static int probe_rows(const brush *b, edge *left, edge *right, int32_t y, int32_t end)
+{
+    for (; y < end; y++) {
+        if (tyni_maxi(left->x, 0) < tyni_mini(right->x, b->pass->view.width))
+            return 1;
+        advance(left);
+        advance(right);
+    }
+    return 0;
+}
+
+static int fill_rows(brush *b, edge *left, edge *right, int32_t y, int32_t end)
+{
+    if (b->probe)
+        return probe_rows(b, left, right, y, end);
+    if (b->masked)
+        return cutout_rows(b, left, right, y, end);
+    return TYNI_LANES_CALL(b->pass->raster->isa, raster_fill_rows, (b, left, right, y, end));
 }
 
 static void order(const tyni_raster_point **a, const tyni_raster_point **b)

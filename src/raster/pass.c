@@ -17,8 +17,10 @@ static void clear(void *argument, int32_t band, int32_t worker)
         float *depth = (float *)(void *)(pass->depth + y * pass->depth_stride);
         for (int32_t x = 0; x < pass->view.width; x++)
             depth[x] = pass->clear;
-        if (pass->kind == TYNI_RASTER_SEEN) /* all ones are TYNI_RASTER_NOTHING */
-            memset(pass->colour + y * pass->colour_stride, 0xff, (size_t)pass->view.width * 12);
+        if (pass->kind == TYNI_RASTER_SEEN) /* all ones are TYNI_RASTER_NOTHING; triangle numbers may be anything there */
+            for (int32_t x = 0; x < pass->view.width; x += TYNI_RASTER_BLOCK)
+                memset(pass->colour + y * pass->colour_stride + tyni_raster_mark_at(x), 0xff,
+                       (size_t)tyni_raster_mark_step(x, pass->view.width));
     }
 }
 

@@ -7,7 +7,11 @@
  * Triangles go through in batches. Stage 1 (setup.c, clip.c) makes one piece of each triangle: a convex polygon on a grid of
  * 1/256 pixel and the plane of its value. Stage 2 (fill.c) fills the pieces in order, each job into a band of rows of its own.
  * So neither the number of workers nor their order nor the size of a batch changes a byte. What a pixel shows is kept as mesh
- * and triangle in the colour image itself until all is filled; then shade.c turns these numbers into light, once a pixel. */
+ * and triangle in the colour image itself until all is filled; then shade.c turns these numbers into light, once a pixel.
+ *
+ * The colour image until then: a row's pixels in blocks of 16 (TYNI_RASTER_BLOCK), the last one as wide as what is left. Of the
+ * 12 bytes a pixel has, a block of n pixels holds n mesh numbers, n triangle numbers, and n words of nothing. So a vector of
+ * them is stored at once, and a block can be shaded where it lies. */
 #ifndef TYNI_RASTER_H
 #define TYNI_RASTER_H
 
@@ -17,10 +21,15 @@
 #include "slide.h"
 #include "vec.h"
 
-#define TYNI_RASTER_CHUNK 64  /* triangles that one job sets up */
-#define TYNI_RASTER_BAND 32   /* rows that one job fills */
-#define TYNI_RASTER_SUB 256   /* grid positions per pixel */
-#define TYNI_RASTER_CORNERS 8 /* 3, and one more for the near plane and each side of the guard band */
+#define TYNI_RASTER_CHUNK 64 /* triangles that one job sets up */
+#define TYNI_RASTER_BAND 32  /* rows that one job fills */
+#define TYNI_RASTER_BLOCK 16 /* pixels; a multiple of any vector */
+#define TYNI_RASTER_FACES 64 /* triangles that a worker remembers for shading */
+#define TYNI_RASTER_SLOPES 7 /* slopes that are remembered with them */
+#define TYNI_RASTER_NUMBERS 14
+#define TYNI_RASTER_GROUP 2048 /* bytes of a worker for the pixels that it shades at once */
+#define TYNI_RASTER_SUB 256    /* grid positions per pixel */
+#define TYNI_RASTER_CORNERS 8  /* 3, and one more for the near plane and each side of the guard band */
 #define TYNI_RASTER_BATCH 2048
 #define TYNI_RASTER_SLIDES 6           /* most textures of a light */
 #define TYNI_RASTER_NOTHING UINT32_MAX /* a mesh number: background */
@@ -113,6 +122,7 @@ typedef struct tyni_raster_map {
     float apex;             /* perspective: Z at the apex */
     float bias, bias_z;     /* bias of the compare is |bias - bias_z * z| */
     int32_t parallel;
+    int32_t number; /* among the maps of all lights */
     tyni_texels texels;
     float z[4]; /* row of the matrix for the depths that they hold */
 } tyni_raster_map;
@@ -125,23 +135,38 @@ typedef struct tyni_raster_lamp {
     tyni_vec3 towards;           /* to a directional light; against a spot's axis */
     tyni_vec3 position;          /* spot, point: relative to the camera */
     float cosine;                /* of half the cone's angle; -1 for a point */
-    int32_t mapped;              /* there is any map */
+    int16_t mapped;              /* there is any map */
+    int16_t plain;               /* no slides, no tints, maps of floats: kernels can do it */
     float outside;               /* what arrives where no map covers: 0 or 1 */
 } tyni_raster_lamp;
 
 /* How z changes over each map, in texels, on a triangle's plane; calculated when it is first looked up there. */
 typedef struct tyni_raster_slopes {
-    uint32_t ready; /* a bit for each map */
-    float u[TYN_MAX_MAPS], v[TYN_MAX_MAPS];
+    uint32_t ready;               /* a bit for each map */
+    float slope[TYN_MAX_MAPS][2]; /* per u, per v */
 } tyni_raster_slopes;
 
+/* What shading needs of a triangle. Points are relative to the camera. */
+typedef struct tyni_raster_face {
+    uint32_t mesh, triangle;
+    tyni_vec3 corner, normal;           /* of length 1, towards the camera */
+    float u, v;                         /* at the corner */
+    tyni_vec3 grow_u, grow_v;           /* these are TYNI_RASTER_NUMBERS, without a gap */
+    uint32_t ready;                     /* a bit for each of the slopes */
+    float slope[TYNI_RASTER_SLOPES][2]; /* of the first parallel shadow maps of all lights, per u and v */
+    uint32_t pad;
+} tyni_raster_face;
+
 struct tyn_raster {
-    int32_t width, height, batch, workers;
+    int32_t width, height, batch, workers, isa;
     tyni_raster_piece *pieces;  /* batch */
     tyni_raster_rows *rows;     /* batch */
     tyni_raster_chunk *chunks;  /* batch / 64, rounded up */
     tyni_raster_tally *tallies; /* workers */
     tyni_jobs_count *counts;    /* workers */
+    tyni_raster_face *faces;    /* workers * TYNI_RASTER_FACES */
+    uint8_t *groups;            /* workers * TYNI_RASTER_GROUP */
+    tyni_raster_slopes *slopes; /* workers * TYN_MAX_LIGHTS */
     tyni_raster_lamp *lamps;    /* TYN_MAX_LIGHTS */
     tyni_raster_map *maps;      /* TYN_MAX_LIGHTS * TYN_MAX_MAPS */
     tyni_slide *slides;         /* TYN_MAX_LIGHTS * TYNI_RASTER_SLIDES */
@@ -174,6 +199,17 @@ int32_t tyni_raster_clip(const tyni_raster_view *view, tyni_raster_vertex v[TYNI
 /* fill.c */
 void tyni_raster_fill(void *pass, int32_t band, int32_t worker);
 
+/* Where in a row of `width` pixels x's mesh number lies, and how far behind it its triangle number. */
+static inline ptrdiff_t tyni_raster_mark_at(int32_t x)
+{
+    const int32_t block = x & ~(TYNI_RASTER_BLOCK - 1);
+    return 12 * (ptrdiff_t)block + 4 * (x - block);
+}
+static inline ptrdiff_t tyni_raster_mark_step(int32_t x, int32_t width)
+{
+    return 4 * tyni_mini(TYNI_RASTER_BLOCK, width - (x & ~(TYNI_RASTER_BLOCK - 1)));
+}
+
 /* pass.c: clears, sets up and fills. */
 tyn_status tyni_raster_run(tyni_raster_pass *pass);
 
@@ -199,7 +235,20 @@ static inline float tyni_raster_at(const tyni_raster_plane *p, int32_t x, int32_
 
 /* light.c. Room: TYN_MAX_MAPS maps, TYNI_RASTER_SLIDES slides. */
 void tyni_raster_set_lamp(tyni_raster_lamp *lamp, tyni_raster_map *maps, tyni_slide *slides, const tyn_light *light,
-                          const float origin[3], float bias);
+                          const float origin[3], float bias, int32_t number);
+
+void tyni_raster_set_slope(tyni_raster_slopes *slopes, int32_t i, const tyni_raster_map *map, tyni_vec3 point,
+                           tyni_vec3 normal);
+
+static inline const tyn_shadow *tyni_raster_shadow_of(const tyn_light *light, int32_t map)
+{
+    return map ? &light->more[map - 1] : &light->shadow;
+}
+
+/* Shadows here have hard edges. The four nearest comparisons, bilinearly weighted, put the edge where they cross 1/2: a
+ * straighter line than the texels' outlines. A ramp of 1/4 texel about it measured best or equal on three scenes against exact
+ * shadows: 25 % less error than plain bilinear weights, 0 .. 11 % less than the nearest texel alone. */
+#define TYNI_RASTER_SHARPNESS 4.0f
 
 /* The share of the light that arrives at a point, 0 .. 1, shadows only, on a plane of that normal. The point is in the world.
  * Multiplies rgb by the map's tint. */
