@@ -393,7 +393,7 @@ typedef struct tyn_config {
     int32_t height;
     int32_t slices;        /* epipolar slices, 8 .. 65536; 0: as TYN_PRESET_QUALITY */
     int32_t samples;       /* samples along a slice, at most: one per pixel column (row), each 2nd, 4th ... so that they
-                              fit; 2 .. 65536; 0: all */
+                              fit; 2 .. 65536; 0: all. slices * samples: at most 2^28 */
     int32_t initial_step;  /* samples between initial rays, 1 .. 64, a power of two; 0: by size, 4 at 480 and
                               16 from 1536 on */
     float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
@@ -438,6 +438,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
      (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                    \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
+                          11 * TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4) +                                 \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 /* More, with TYN_RAYS_TREE, with TYN_RAYS_SWEEP, with TYN_GATHER_IVB or _ED10, and with downscale. */
 #define TYN_MEMORY_TREE(shadow_size, maps, workers)                                                                            \
@@ -456,6 +457,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_STATS_BYTES 256
 #define TYN_ROW_BYTES 1216
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
+#define TYNI_RUN(samples) ((size_t)((samples) < 256 ? (samples) : 256))
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))
 #define TYNI_SAMPLES(width, height, samples)                                                                                   \
     ((size_t)((samples) < TYNI_LONGER(width, height) ? (samples) : TYNI_LONGER(width, height)))

@@ -26,9 +26,12 @@ typedef struct chart {
 static void fill(const chart *c, int32_t x0, int32_t x1, int32_t y0, int32_t y1, const float rgb[3])
 {
     static const tyn_display display = {1.0f, TYN_TONE_CLAMP, 0};
+    float one[3];
+    float *const pixel[3] = {&one[0], &one[1], &one[2]};
+    memcpy(one, rgb, sizeof one);
     for (int32_t y = tyni_maxi(y0, c->top); y < tyni_mini(y1, c->top + c->height); y++)
         for (int32_t x = tyni_maxi(x0, 0); x < tyni_mini(x1, c->image->width); x++)
-            tyni_composite_write(c->image, &display, x, y, 1, rgb);
+            tyni_composite_write(TYN_ISA_SCALAR, c->image, &display, x, y, 1, pixel);
 }
 
 static int32_t x_of(const chart *c, int32_t column)

@@ -3,7 +3,7 @@
 
 #include "base.h"
 #include "check.h"
-#include "num.h"
+#include "lanes/lanes.h"
 
 /* sRGB decoding of a byte (IEC 61966-2-1). */
 static const float srgb[256] = {
@@ -67,73 +67,33 @@ static const uint8_t bayer[64] = {
     3, 35, 11, 43, 1, 33, 9,  41, 51, 19, 59, 27, 49, 17, 57, 25, 15, 47, 7, 39, 13, 45, 5, 37, 63, 31, 55, 23, 61, 29, 53, 21,
 };
 
-void tyni_composite_read(const tyn_image *image, int32_t x, int32_t y, int32_t count, float *rgb)
+/* A row of the matrix, twice and a half: 16 pixels can be read from any of its first eight. */
+static void dither_row(const tyn_display *display, int32_t y, float row[24])
+{
+    for (int32_t i = 0; i < 24; i++)
+        row[i] = display->dither ? ((float)bayer[(y & 7) * 8 + (i & 7)] + 0.5f) * (1.0f / 64.0f) : 0.5f;
+}
+
+#define TYNI_KERNEL "composite_kernel.h"
+#include "lanes/each.h"
+
+void tyni_composite_read(int32_t isa, const tyn_image *image, int32_t x, int32_t y, int32_t count, float *const rgb[3])
 {
     const uint8_t *p;
-    int32_t red = image->format == TYN_BGRA8_SRGB ? 2 : 0;
     if (!image->pixels) {
-        memset(rgb, 0, sizeof *rgb * 3u * (size_t)count);
+        for (int32_t c = 0; c < 3; c++)
+            memset(rgb[c], 0, sizeof *rgb[c] * (size_t)count);
         return;
     }
     p = (const uint8_t *)tyni_image_row(image, y) + (ptrdiff_t)x * tyn_format_bytes(image->format);
-    for (int32_t i = 0; i < count; i++, rgb += 3) {
-        if (image->format == TYN_RGB_F32) {
-            const float *f = (const float *)(const void *)p + 3 * (ptrdiff_t)i;
-            for (int32_t c = 0; c < 3; c++)
-                rgb[c] = tyni_clampf(f[c], 0.0f, 1e30f);
-        } else if (image->format == TYN_RGB565_SRGB) {
-            uint32_t v = ((const uint16_t *)(const void *)p)[i], r = v >> 11, g = v >> 5 & 63u, b = v & 31u;
-            rgb[0] = srgb[r << 3 | r >> 2];
-            rgb[1] = srgb[g << 2 | g >> 4];
-            rgb[2] = srgb[b << 3 | b >> 2];
-        } else {
-            rgb[0] = srgb[p[4 * (ptrdiff_t)i + red]];
-            rgb[1] = srgb[p[4 * (ptrdiff_t)i + 1]];
-            rgb[2] = srgb[p[4 * (ptrdiff_t)i + 2 - red]];
-        }
-    }
+    TYNI_LANES_CALL(isa, composite_read, (image->format, p, count, rgb));
 }
 
-/* 0 .. 1 linear to 0 .. 1 encoded. */
-static float encode(float x)
+void tyni_composite_write(int32_t isa, const tyn_image *image, const tyn_display *display, int32_t x, int32_t y, int32_t count,
+                          float *const rgb[3])
 {
-    if (x <= 0.0031308f)
-        return 12.92f * x;
-    return 1.055f * tyni_num_exp(tyni_num_log(x) * (1.0f / 2.4f)) - 0.055f;
-}
-
-static uint32_t level(float encoded, float levels, float offset)
-{
-    return (uint32_t)tyni_clampf(encoded * levels + offset, 0.0f, levels);
-}
-
-void tyni_composite_write(const tyn_image *image, const tyn_display *display, int32_t x, int32_t y, int32_t count,
-                          const float *rgb)
-{
-    float exposure = display->exposure > 0.0f ? display->exposure : 1.0f;
-    int32_t red = image->format == TYN_BGRA8_SRGB ? 2 : 0;
     uint8_t *p = (uint8_t *)tyni_image_row(image, y) + (ptrdiff_t)x * tyn_format_bytes(image->format);
-    for (int32_t i = 0; i < count; i++, rgb += 3) {
-        float v[3], offset = 0.5f;
-        for (int32_t c = 0; c < 3; c++)
-            v[c] = tyni_clampf(rgb[c] * exposure, 0.0f, 1e30f);
-        if (image->format == TYN_RGB_F32) {
-            memcpy((float *)(void *)p + 3 * (ptrdiff_t)i, v, sizeof v);
-            continue;
-        }
-        for (int32_t c = 0; c < 3; c++)
-            v[c] = encode(display->tone == TYN_TONE_FILM ? 1.0f - tyni_num_exp(-v[c]) : tyni_minf(v[c], 1.0f));
-        if (display->dither)
-            offset = ((float)bayer[(y & 7) * 8 + ((x + i) & 7)] + 0.5f) * (1.0f / 64.0f);
-        if (image->format == TYN_RGB565_SRGB) {
-            uint32_t bits = level(v[0], 31.0f, offset) << 11 | level(v[1], 63.0f, offset) << 5 | level(v[2], 31.0f, offset);
-            ((uint16_t *)(void *)p)[i] = (uint16_t)bits;
-        } else {
-            uint8_t *q = p + 4 * (ptrdiff_t)i;
-            q[red] = (uint8_t)level(v[0], 255.0f, offset);
-            q[1] = (uint8_t)level(v[1], 255.0f, offset);
-            q[2 - red] = (uint8_t)level(v[2], 255.0f, offset);
-            q[3] = 255;
-        }
-    }
+    float row[24];
+    dither_row(display, y, row);
+    TYNI_LANES_CALL(isa, composite_write, (image->format, display, p, x, count, rgb, row));
 }

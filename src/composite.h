@@ -6,11 +6,12 @@
 
 #define TYNI_COLOUR_FORMATS (1u << TYN_RGB_F32 | 1u << TYN_RGBA8_SRGB | 1u << TYN_BGRA8_SRGB | 1u << TYN_RGB565_SRGB)
 
-/* `count` pixels from (x, y) on as linear RGB, finite and not negative; black for an image without pixels. */
-void tyni_composite_read(const tyn_image *image, int32_t x, int32_t y, int32_t count, float *rgb);
+/* `count` pixels from (x, y) on as planes of linear red, green and blue, finite and not negative; black for an image without
+ * pixels. isa: of tyni_lanes_choose. */
+void tyni_composite_read(int32_t isa, const tyn_image *image, int32_t x, int32_t y, int32_t count, float *const rgb[3]);
 
 /* Exposes, tone maps, dithers and encodes. Finite for any input. */
-void tyni_composite_write(const tyn_image *image, const tyn_display *display, int32_t x, int32_t y, int32_t count,
-                          const float *rgb);
+void tyni_composite_write(int32_t isa, const tyn_image *image, const tyn_display *display, int32_t x, int32_t y, int32_t count,
+                          float *const rgb[3]);
 
 #endif

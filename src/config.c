@@ -65,6 +65,8 @@ tyn_status tyni_config_fill(tyn_config *c)
         outside(c->maps, 1, TYN_MAX_MAPS) || outside(c->lights, 1, TYN_MAX_LIGHTS) || outside(c->workers, 1, TYN_MAX_WORKERS) ||
         outside(c->isa, 0, 2 * TYN_ISA_WASM - 1))
         return TYN_E_CONFIG;
+    if ((int64_t)c->slices * tyni_mini(c->samples, tyni_maxi(c->width, c->height)) > 1 << 28)
+        return TYN_E_CONFIG;
     if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
         return TYN_E_CONFIG;
     if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_COLUMNS ||

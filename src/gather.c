@@ -5,9 +5,6 @@
 #include "entry.h"
 #include "num.h"
 
-/* Below this sum of weights the samples tell too little of the pixel. A sample one and a half thresholds off has a fifth. */
-#define ENOUGH 0.15f
-
 typedef struct sum {
     float low, high, third, weight;
 } sum;
@@ -78,7 +75,7 @@ static int gather_shear(const tyni_field *field, const tyni_slices *slices, floa
         tap(&s, field, line, sample + 1, depth, (1.0f - f) * g);
         tap(&s, field, line + 1, sample + 1, depth, f * g);
     }
-    return settle(&s, ENOUGH, value);
+    return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
 
 /* A pixel's place on a line, in samples. */
@@ -106,7 +103,7 @@ static int gather_ivb(const tyni_field *field, const tyni_slices *slices, float 
         tap(&s, field, line, j, depth, weight * (1.0f - f));
         tap(&s, field, line, j + 1, depth, weight * f);
     }
-    return settle(&s, ENOUGH, value);
+    return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
 
 /* ED10 section 4.3: weights of a tap at a distance of r spacings, and of the depth between it and the pixel, in thresholds. The
@@ -198,10 +195,10 @@ static int gather_ed10(const tyni_gather *gather, const tyni_field *field, const
             s.high += one.high;
             s.third += one.third;
             s.weight += one.weight;
-            if (one.weight > ENOUGH)
+            if (one.weight > TYNI_GATHER_ENOUGH)
                 break;
         }
-    return settle(&s, ENOUGH, value);
+    return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
 
 int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
@@ -236,7 +233,7 @@ int tyni_gather_grid(const tyni_grid *g, float x, float y, float depth, float va
         if (at[0] + dx < g->columns && at[1] + dy < g->rows)
             tap(&s, &g->field, at[1] + dy, at[0] + dx, depth, (dx ? f[0] : 1.0f - f[0]) * (dy ? f[1] : 1.0f - f[1]));
     }
-    return settle(&s, ENOUGH, value);
+    return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
 
 void tyni_gather_nearest(const tyni_grid *g, float x, float y, float depth, float value[3])

@@ -10,6 +10,9 @@
 
 #include "base.h"
 
+/* Below this sum of weights the samples tell too little of the pixel. A sample one and a half thresholds off has a fifth. */
+#define TYNI_GATHER_ENOUGH 0.15f
+
 /* Finished lines of one light. */
 typedef struct tyni_field {
     uint32_t *entries; /* entry.h; line after line, `pitch` apart */

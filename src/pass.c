@@ -9,10 +9,15 @@
 #include "sample.h"
 #include "walk.h"
 
+int32_t tyni_pass_run(const tyn_context *c)
+{
+    return tyni_mini((c->samples + 15) / 16 * 16, TYNI_PASS_RUN);
+}
+
 size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
-    size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples), pitch = (samples + 15) / 16 * 16;
+    size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
     size_t steps = tyni_row_room(c->config.shadow_size, c->config.maps), columns = 2 * steps;
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
     memset(s, 0, sizeof *s);
@@ -20,9 +25,10 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->threshold = tyni_arena_take(&arena, columns, sizeof *s->threshold);
     s->split = tyni_arena_take(&arena, steps, sizeof *s->split);
     s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
-    s->value[0] = tyni_arena_take(&arena, 3 * pitch, sizeof *s->value[0]);
-    s->value[1] = s->value[0] ? s->value[0] + pitch : NULL;
-    s->value[2] = s->value[0] ? s->value[1] + pitch : NULL;
+    for (int32_t i = 0; i < 3; i++)
+        s->value[i] = tyni_arena_take(&arena, samples, sizeof *s->value[i]);
+    for (int32_t i = 0; i < TYNI_PASS_PLANES; i++)
+        s->plane[i] = tyni_arena_take(&arena, (size_t)tyni_pass_run(c), sizeof *s->plane[i]);
     s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);

@@ -14,14 +14,18 @@
 
 #include "base.h"
 
-/* What one worker needs for one slice: small enough for its caches. The pixels' stages use it again: a run of as many pixels
- * as a line has samples goes at a time. */
+/* Pixels of a row that go through their stages together: at most this, nor more than a line has samples. A multiple of 16. */
+#define TYNI_PASS_RUN 256
+#define TYNI_PASS_PLANES 11
+
+/* What one worker needs for one slice, or for a run of pixels: small enough for its caches. */
 typedef struct tyni_scratch {
     tyni_row *row;
     uint16_t *threshold;             /* 2 * tyni_row_room */
     float *split;                    /* tyni_row_room */
     float *depth;                    /* samples */
-    float *value[3];                 /* samples: visibility. One block, so that it also holds three floats for each sample */
+    float *value[3];                 /* samples: visibility */
+    float *plane[TYNI_PASS_PLANES];  /* tyni_pass_run each, for pixels */
     uint32_t *breaks, *rays, *fresh; /* bits */
     tyni_node *nodes;                /* TYN_RAYS_TREE, else NULL */
     tyni_sweep sweep;                /* arrays with TYN_RAYS_SWEEP, else NULL */
@@ -47,7 +51,7 @@ typedef struct tyni_pass {
 } tyni_pass;
 
 struct tyn_context {
-    tyn_config config; /* defaults filled in */
+    tyn_config config; /* defaults filled in; isa is the one that was picked */
     size_t bytes;
     int32_t samples;    /* room per line */
     tyni_field lines;   /* slices * samples */
@@ -65,6 +69,9 @@ struct tyn_context {
 
 /* A worker's scratch, and its bytes; before it is placed, only the bytes. */
 size_t tyni_pass_scratch(const tyn_context *context, int32_t worker, tyni_scratch *scratch);
+
+/* Pixels of a run: a multiple of 16. */
+int32_t tyni_pass_run(const tyn_context *context);
 
 /* The clock; 0 without one. */
 uint64_t tyni_pass_now(const tyni_pass *pass);

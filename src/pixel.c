@@ -4,18 +4,23 @@
 #include "art.h"
 #include "base.h"
 #include "composite.h"
+#include "entry.h"
 #include "debug.h"
+#include "lanes/lanes.h"
 #include "num.h"
 #include "sample.h"
 #include "walk.h"
 
-#define CHUNK 16 /* pixels at a time whose colours are on the stack */
-
-/* A run of pixels in one row; what it needs lies in the worker's scratch. */
+/* A run of pixels in one row. Its planes lie in the worker's scratch and have room for a multiple of 16 pixels. */
 typedef struct run {
     int32_t x, y, count;
     const float *depth; /* as in the depth image */
-    float *light;       /* 3 floats a pixel */
+    float *length;      /* of the view ray, per depth */
+    float *reach;       /* metres to where the ray ends: the surface, or the frame's max_distance; 0: no ray */
+    float *cosine;      /* of the ray and the way to the light: directional lights */
+    float *from, *to;   /* the part of the ray that the light reaches; to = 0: none. Unbounded lights: 0, reach */
+    float *value[3];    /* visibility */
+    float *light[3];    /* L_scat so far */
     uint32_t *rejected; /* bits */
     tyn_stats *stats;
 } run;
@@ -41,42 +46,123 @@ static int visible(const tyni_pass *p, float px, float py, float at, float value
     return p->naive;
 }
 
-/* Adds visibility times the light that would be there without shadows. The phase function comes in here, last: it varies fast
- * near the epipole (IVB section 6.8). */
-static void shade(const tyni_pass *p, const tyni_sight *v, float t0, float t1, const float value[3], float *rgb)
+/* Pixel x of the row on the shear grid: 0 left of the lines along y, 1 on them, 2 right of them. Rises along the row. */
+static int side_of(const tyni_slices *g, int32_t x, float dy)
 {
-    const tyni_medium *m = &p->medium;
-    float light[3], norm[3], mix[3] = {1.0f, 1.0f, 1.0f};
-    if (p->count == 3) {
-        memcpy(light, value, sizeof light);
-    } else {
-        light[m->low] = value[0];
-        light[m->high] = value[1];
-        light[m->middle] = between(value[0], value[1], m->blend);
-    }
-    tyni_integral_norm(m, p->lamp, v, t0, t1, norm);
-    if (p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
-        tyni_medium_mix(m, tyni_clampf(tyni_vec_dot(v->d, p->lamp->to_light), -1.0f, 1.0f), mix);
-    for (int32_t c = 0; c < 3; c++)
-        rgb[c] += light[c] * norm[c] * mix[c] * p->lamp->colour[c];
+    float dx = ((float)x + 0.5f) * g->ew - g->ex;
+    return tyni_absf(dy) > tyni_absf(dx) ? 1 : dx < 0.0f ? 0 : 2;
 }
 
-static void unwarp(const tyni_pass *p, const run *r)
+/* The first of the pixels x .. end - 1 that is not left of `side`; end if there is none. */
+static int32_t side_begin(const tyni_slices *g, int32_t x, int32_t end, float dy, int side)
+{
+    while (x < end) {
+        int32_t middle = x + (end - x) / 2;
+        if (side_of(g, middle, dy) < side)
+            x = middle + 1;
+        else
+            end = middle;
+    }
+    return x;
+}
+
+#define TYNI_KERNEL "pixel_kernel.h"
+#include "lanes/each.h"
+
+/* The row's pixels in at most three parts, one for each sector that it crosses. */
+static void unwarp_shear(const tyni_pass *p, const run *r)
+{
+    const tyni_slices *g = &p->slices;
+    float dy = ((float)r->y + 0.5f) * g->ew - g->ey;
+    int32_t x = r->x, end = r->x + r->count;
+    for (int side = 0; side < 3 && x < end; side++) {
+        int32_t next = side < 2 ? side_begin(g, x, end, dy, side + 1) : end;
+        const tyni_sector *s = &g->sectors[side == 1 ? 2 + (dy < 0.0f) : side == 0];
+        if (!s->count) /* the epipole's own pixel, or a corner lost to rounding: any will do, its samples are weighed */
+            for (s = g->sectors; !s->count && s < g->sectors + 3; s++)
+                ;
+        if (next > x)
+            TYNI_LANES_CALL(p->context->config.isa, pixel_unwarp, (p, r, s, x - r->x, next - r->x));
+        x = next;
+    }
+}
+
+/* Pixel by pixel: other lines, grids, and three channels. */
+static void unwarp_each(const tyni_pass *p, const run *r)
+{
+    int rays = p->method == TYN_METHOD_MARCH && !p->grid.rows;
+    for (int32_t i = 0; i < r->count; i++) {
+        float px = (float)(r->x + i) + 0.5f, py = (float)r->y + 0.5f, value[3];
+        if (!(r->to[i] > 0.0f))
+            continue;
+        if (rays || !visible(p, px, py, r->to[i] / (r->length[i] * p->view.far_depth), value)) {
+            r->rejected[i >> 5] |= 1u << (i & 31);
+            continue;
+        }
+        for (int32_t c = 0; c < 3; c++)
+            r->value[c][i] = value[c];
+    }
+}
+
+/* The light's part of each ray, where that is not all of it. */
+static void clip_rays(const tyni_pass *p, const run *r)
 {
     for (int32_t i = 0; i < r->count; i++) {
-        float px = (float)(r->x + i) + 0.5f, py = (float)r->y + 0.5f, t0, t1, length, value[3];
         tyni_sight v;
-        length = tyni_view_sight(&p->view, px, py, &v);
-        if (!tyni_pass_range(p, &v, tyni_view_depth(&p->view, r->depth[i]) * length, &t0, &t1))
-            continue;
-        if (p->method != TYN_METHOD_MARCH || p->grid.rows) {
-            if (visible(p, px, py, t1 / (length * p->view.far_depth), value)) {
-                shade(p, &v, t0, t1, value, r->light + 3 * (ptrdiff_t)i);
-                continue;
-            }
-        }
-        r->rejected[i >> 5] |= 1u << (i & 31);
+        float t0 = 0.0f, t1 = r->reach[i];
+        tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
+        if (!(t1 > 0.0f) || !tyni_view_clip(p->lamp, &v, &t0, &t1))
+            t0 = t1 = 0.0f;
+        r->from[i] = t0;
+        r->to[i] = t1;
     }
+}
+
+/* The light of a lamp at a point that would be there without shadows, ray by ray. */
+static void shade_local(const tyni_pass *p, const run *r)
+{
+    const tyni_medium *m = &p->medium;
+    for (int32_t i = 0; i < r->count; i++) {
+        float light[3], norm[3];
+        tyni_sight v;
+        if (!(r->to[i] > 0.0f) || tyni_sample_bit(r->rejected, i))
+            continue;
+        for (int32_t c = 0; c < 3; c++)
+            light[c] = r->value[c][i];
+        if (p->count != 3) {
+            float low = light[0], high = light[1];
+            light[m->low] = low;
+            light[m->high] = high;
+            light[m->middle] = between(low, high, m->blend);
+        }
+        tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
+        tyni_integral_norm(m, p->lamp, &v, r->from[i], r->to[i], norm);
+        for (int32_t c = 0; c < 3; c++)
+            r->light[c][i] += light[c] * norm[c] * p->lamp->colour[c];
+    }
+}
+
+static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
+{
+    const int32_t isa = p->context->config.isa;
+    r->from = plane[0];
+    r->to = plane[1];
+    if (tyni_view_bounded(p->lamp)) {
+        clip_rays(p, r);
+    } else {
+        memset(r->from, 0, sizeof *r->from * (size_t)r->count);
+        r->to = r->reach;
+    }
+    if (p->method == TYN_METHOD_EPIPOLAR && p->slices.layout == TYNI_LAYOUT_SHEAR && !p->grid.rows && p->count < 3)
+        unwarp_shear(p, r);
+    else
+        unwarp_each(p, r);
+    if (p->method == TYN_METHOD_MARCH && !p->grid.rows)
+        return;
+    if (p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
+        TYNI_LANES_CALL(isa, pixel_shade, (p, r));
+    else
+        shade_local(p, r);
 }
 
 /* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. */
@@ -85,13 +171,12 @@ static void correct(const tyni_pass *p, const run *r)
     int32_t steps = p->context->config.rays == TYN_RAYS_STEPS ? p->context->config.steps : 0, count = 0;
     for (int32_t i = tyni_sample_next(r->rejected, 0, r->count - 1); i < r->count;
          i = tyni_sample_next(r->rejected, i + 1, r->count - 1)) {
-        float length, light[3];
+        float light[3];
         tyni_sight v;
-        length = tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
-        length = tyni_art_reach(p->frame, tyni_view_depth(&p->view, r->depth[i]) * length);
-        tyni_walk_pixel(p->lamp, &p->medium, &v, length, steps, light);
+        tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
+        tyni_walk_pixel(p->lamp, &p->medium, &v, r->reach[i], steps, light);
         for (int32_t c = 0; c < 3; c++)
-            r->light[3 * (ptrdiff_t)i + c] += light[c];
+            r->light[c][i] += light[c];
         count++;
     }
     if (p->grid.rows)
@@ -102,69 +187,75 @@ static void correct(const tyni_pass *p, const run *r)
         r->stats->rejected += count;
 }
 
-/* L = transmittance * colour + L_scat, into the target's format. */
-static void finish(const tyni_pass *p, int32_t x, int32_t y, int32_t count, const float *depth, const float *light)
+/* L = transmittance * colour + L_scat, into the target's format. `colour` and `share`: three planes each. */
+static void finish(const tyni_pass *p, const run *r, float *const colour[3], float *const share[3])
 {
     static const tyn_display plain = {1.0f, TYN_TONE_CLAMP, 0};
     const tyn_frame *frame = p->frame;
-    float rgb[3 * CHUNK], share[3 * CHUNK];
+    const int32_t isa = p->context->config.isa;
     if (frame->scatter.pixels)
-        tyni_composite_write(&frame->scatter, &plain, x, y, count, light);
+        tyni_composite_write(isa, &frame->scatter, &plain, r->x, r->y, r->count, r->light);
     if (!frame->target.pixels && !frame->transmittance.pixels)
         return;
-    for (int32_t i = 0; i < count; i++) {
-        tyni_sight v;
-        float length = tyni_view_sight(&p->view, (float)(x + i) + 0.5f, (float)y + 0.5f, &v);
-        float s = tyni_art_reach(frame, tyni_view_depth(&p->view, depth[i]) * length);
-        for (int32_t c = 0; c < 3; c++)
-            share[3 * i + c] = tyni_num_exp(-p->fog[c] * s);
-    }
+    TYNI_LANES_CALL(isa, pixel_share, (p, r, share));
     if (frame->transmittance.pixels)
-        tyni_composite_write(&frame->transmittance, &plain, x, y, count, share);
+        tyni_composite_write(isa, &frame->transmittance, &plain, r->x, r->y, r->count, share);
     if (!frame->target.pixels || frame->debug)
         return;
-    tyni_composite_read(&frame->colour, x, y, count, rgb);
-    for (int32_t i = 0; i < 3 * count; i++)
-        rgb[i] = share[i] * rgb[i] + light[i];
-    tyni_composite_write(&frame->target, &frame->display, x, y, count, rgb);
+    tyni_composite_read(isa, &frame->colour, r->x, r->y, r->count, colour);
+    TYNI_LANES_CALL(isa, pixel_blend, (r, colour, share));
+    tyni_composite_write(isa, &frame->target, &frame->display, r->x, r->y, r->count, colour);
 }
 
-static void draw_debug(const tyni_pass *p, const run *r, int32_t first, int32_t count)
+static void draw_debug(const tyni_pass *p, const run *r, float *const colour[3])
 {
     static const tyn_display plain = {1.0f, TYN_TONE_FILM, 0};
-    float rgb[3 * CHUNK], exposure = p->frame->display.exposure > 0.0f ? p->frame->display.exposure : 1.0f;
-    tyni_composite_read(&p->frame->colour, r->x + first, r->y, count, rgb);
-    for (int32_t i = 0; i < count; i++) {
+    const int32_t isa = p->context->config.isa;
+    float exposure = p->frame->display.exposure > 0.0f ? p->frame->display.exposure : 1.0f;
+    tyni_composite_read(isa, &p->frame->colour, r->x, r->y, r->count, colour);
+    for (int32_t i = 0; i < r->count; i++) {
+        float rgb[3];
         for (int32_t c = 0; c < 3; c++)
-            rgb[3 * i + c] *= 0.5f * exposure;
-        tyni_debug_pixel(p, r->x + first + i, r->y, r->depth[first + i], tyni_sample_bit(r->rejected, first + i), rgb + 3 * i);
+            rgb[c] = colour[c][i] * 0.5f * exposure;
+        tyni_debug_pixel(p, r->x + i, r->y, r->depth[i], tyni_sample_bit(r->rejected, i), rgb);
+        for (int32_t c = 0; c < 3; c++)
+            colour[c][i] = rgb[c];
     }
-    tyni_composite_write(&p->frame->target, &plain, r->x + first, r->y, count, rgb);
+    tyni_composite_write(isa, &p->frame->target, &plain, r->x, r->y, r->count, colour);
 }
 
-static void draw_run(const tyni_pass *p, const run *r, float *sum)
+/* `sum`: of the lights before, three planes of the run's pixels. */
+static void draw_run(const tyni_pass *p, run *r, float *const plane[2], float *sum)
 {
     /* where the lines hold marks there is no light to see */
     int dark = p->method == TYN_METHOD_NONE || tyni_debug_marks(p->frame->debug);
+    const size_t bytes = sizeof **r->light * (size_t)r->count;
+    float *share[3];
     uint64_t time[4];
-    if (p->first)
-        memset(r->light, 0, sizeof *r->light * 3u * (size_t)r->count);
-    else
-        memcpy(r->light, sum, sizeof *r->light * 3u * (size_t)r->count);
     time[0] = tyni_pass_now(p);
+    for (int32_t c = 0; c < 3; c++) {
+        if (p->first)
+            memset(r->light[c], 0, bytes);
+        else
+            memcpy(r->light[c], sum + c * r->count, bytes);
+    }
     memset(r->rejected, 0, sizeof *r->rejected * (size_t)tyni_sample_words(r->count));
+    TYNI_LANES_CALL(p->context->config.isa, pixel_sights, (p, r));
     if (!dark)
-        unwarp(p, r);
+        unwarp(p, r, plane);
     time[1] = tyni_pass_now(p);
     if (!dark)
         correct(p, r);
     time[2] = tyni_pass_now(p);
-    if (!p->last)
-        memcpy(sum, r->light, sizeof *r->light * 3u * (size_t)r->count);
-    for (int32_t i = 0; i < r->count && p->last; i += CHUNK)
-        finish(p, r->x + i, r->y, tyni_mini(CHUNK, r->count - i), r->depth + i, r->light + 3 * (ptrdiff_t)i);
-    for (int32_t i = 0; i < r->count && p->frame->debug && p->frame->target.pixels; i += CHUNK)
-        draw_debug(p, r, i, tyni_mini(CHUNK, r->count - i));
+    for (int32_t c = 0; c < 3 && !p->last; c++)
+        memcpy(sum + c * r->count, r->light[c], bytes);
+    share[0] = r->cosine; /* no longer needed */
+    share[1] = plane[0];
+    share[2] = plane[1];
+    if (p->last)
+        finish(p, r, r->value, share);
+    if (p->frame->debug && p->frame->target.pixels)
+        draw_debug(p, r, r->value);
     time[3] = tyni_pass_now(p);
     *(p->grid.rows ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += time[1] - time[0];
     r->stats->correct_ns += time[2] - time[1];
@@ -174,18 +265,25 @@ static void draw_run(const tyni_pass *p, const run *r, float *sum)
 void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
 {
     const tyni_pass *p = argument;
-    int32_t end = tyni_mini((index + 1) * TYNI_PIXEL_BAND, p->view.height);
+    int32_t end = tyni_mini((index + 1) * TYNI_PIXEL_BAND, p->view.height), most = tyni_pass_run(p->context);
     tyni_scratch s;
     run r;
     tyni_pass_scratch(p->context, worker, &s);
-    r.light = s.value[0];
+    memset(&r, 0, sizeof r);
+    r.length = s.plane[0];
+    r.reach = s.plane[1];
+    r.cosine = s.plane[2];
+    for (int32_t c = 0; c < 3; c++) {
+        r.value[c] = s.plane[3 + c];
+        r.light[c] = s.plane[6 + c];
+    }
     r.rejected = s.fresh;
     r.stats = s.stats;
     for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++)
         for (r.x = 0; r.x < p->view.width; r.x += r.count) {
             float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r.y * p->view.width + r.x) * 3 : NULL;
-            r.count = tyni_mini(p->context->samples, p->view.width - r.x);
+            r.count = tyni_mini(most, p->view.width - r.x);
             r.depth = tyni_door_row(&p->depth, r.x, r.y, r.count, s.depth);
-            draw_run(p, &r, sum);
+            draw_run(p, &r, &s.plane[9], sum);
         }
 }

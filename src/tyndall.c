@@ -138,7 +138,9 @@ tyn_status tyn_render(tyn_context *context, const tyn_frame *frame)
 tyn_status tyn_encode(const tyn_image *linear, const tyn_display *display, const tyn_image *target)
 {
     tyn_status status;
-    float rgb[3 * 32];
+    float red[32], green[32], blue[32];
+    float *const rgb[3] = {red, green, blue};
+    int32_t isa = TYN_ISA_SCALAR;
     if (!linear || !display || !target)
         return TYN_E_NULL;
     status = tyni_check_image(linear, TYNI_FORMAT_BIT(TYN_RGB_F32));
@@ -148,13 +150,15 @@ tyn_status tyn_encode(const tyn_image *linear, const tyn_display *display, const
         status = TYN_E_IMAGE;
     if (status == TYN_OK)
         status = tyni_check_display(display);
+    if (status == TYN_OK)
+        status = tyni_lanes_choose(0, &isa);
     if (status != TYN_OK)
         return status;
     for (int32_t y = 0; y < target->height; y++)
         for (int32_t x = 0; x < target->width; x += 32) {
             int32_t count = tyni_mini(32, target->width - x);
-            tyni_composite_read(linear, x, y, count, rgb);
-            tyni_composite_write(target, display, x, y, count, rgb);
+            tyni_composite_read(isa, linear, x, y, count, rgb);
+            tyni_composite_write(isa, target, display, x, y, count, rgb);
         }
     return TYN_OK;
 }

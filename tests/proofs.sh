@@ -68,7 +68,7 @@ rank() { # of a file below src/
     room=${1#src/}
     case $room in
     */*) room=${room%%/*} ;;
-    *) room=${room%.*} ;;
+    *) room=${room%.*} room=${room%_kernel} ;;
     esac
     rank=0
     for r in $order; do

@@ -107,6 +107,16 @@ TYNI_V_INLINE v_int TYNI_V(rgba)(v_int r, v_int g, v_int b, v_int a)
         return v_ior(v_ior(r, v_shl(g, 8)), v_ior(v_shl(b, 16), v_shl(a, 24)));
     return v_ior(v_ior(a, v_shl(b, 8)), v_ior(v_shl(g, 16), v_shl(r, 24)));
 }
+/* Bytes of the first n pixels: out[k] has byte k of each. */
+TYNI_V_INLINE void v_load_rgba8_n(const uint8_t *p, v_int out[4], int32_t n)
+{
+    const v_int all = v_iload_n(p, n), low = v_iset(255);
+    const uint32_t one = 1;
+    uint8_t first;
+    memcpy(&first, &one, 1);
+    for (int32_t k = 0; k < 4; k++)
+        out[k] = v_iand(v_shr(all, 8 * (first ? k : 3 - k)), low);
+}
 TYNI_V_INLINE void v_store_rgba8(uint8_t *p, v_int r, v_int g, v_int b, v_int a)
 {
     v_istore(p, TYNI_V(rgba)(r, g, b, a));

@@ -50,6 +50,7 @@
  *     v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything
  *     v_store_rgb(p, r, g, b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b)
  *     v_store_rgba8(p, r, g, b, a)       4 v_n bytes out of the low 8 bits of v_ints; v_store_rgba8_n(p, r, g, b, a, n)
+ *     v_load_rgba8_n(p, out[4], n)       and the way back: four v_ints
  *     v_above16(t, position)             32 bits from 32 uint16_t: bit i is position < t[i]; position is 0 .. 65535
  * Over lanes:
  *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
@@ -170,6 +171,7 @@
 #define v_store_u8_n TYNI_V(store_u8_n)
 #define v_store_u16_n TYNI_V(store_u16_n)
 #define v_store_rgb_n TYNI_V(store_rgb_n)
+#define v_load_rgba8_n TYNI_V(load_rgba8_n)
 #define v_store_rgba8 TYNI_V(store_rgba8)
 #define v_store_rgba8_n TYNI_V(store_rgba8_n)
 #define v_sum16 TYNI_V(sum16)

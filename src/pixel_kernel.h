@@ -1,0 +1,187 @@
+/* pixel_kernel.h - a template: a run of pixels at a time, for pixel.c. Planes have room for whole vectors. */
+
+static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const run *r)
+{
+    const tyni_view *view = &p->view;
+    const float py = (float)r->y + 0.5f, far = view->far_depth, most = p->frame->max_distance;
+    const tyni_vec3 o = view->origin, dx = view->dx, dy = view->dy, to = p->lamp->to_light;
+    for (int32_t i = 0; i < r->count; i += v_n) {
+        const v_float px = v_to_float(v_iadd(v_iset(r->x + i), v_index())) + 0.5f;
+        v_float x = (o.x + px * dx.x) + py * dy.x, y = (o.y + px * dx.y) + py * dy.y, z = (o.z + px * dx.z) + py * dy.z;
+        v_float length = v_set(1.0f), depth = v_load_n(r->depth + i, r->count - i), reach;
+        if (view->orthographic) {
+            x = v_set(view->forward.x);
+            y = v_set(view->forward.y);
+            z = v_set(view->forward.z);
+        } else {
+            length = v_sqrt(x * x + y * y + z * z);
+        }
+        depth = v_select(v_lt(depth, v_set(far)), depth, v_set(far));
+        depth = v_select(v_gt(depth, v_set(0.0f)), depth, v_set(0.0f));
+        reach = depth * length;
+        if (most > 0.0f)
+            reach = v_min(v_set(most), reach);
+        v_store(r->length + i, length);
+        v_store(r->reach + i, reach);
+        v_store(r->cosine + i, v_clamp((x * to.x + y * to.y + z * to.z) / length, v_set(-1.0f), v_set(1.0f)));
+    }
+}
+
+/* What samples add up to. */
+typedef struct TYNI_V(pixel_sum) {
+    v_float low, high, weight;
+} TYNI_V(pixel_sum);
+
+/* A sample of each pixel's line: tap() of gather.c. `at`: the pixel's depth, not below the nearest that is told apart. */
+TYNI_V_INLINE void TYNI_V(pixel_tap)(TYNI_V(pixel_sum) * s, const tyni_field *f, v_int line, v_int sample, v_float at,
+                                     v_float weight)
+{
+    const v_int entry = v_igather(f->entries, v_shl(v_iadd(v_imul(line, v_iset(f->pitch)), sample), 2));
+    const v_int code = v_shr(entry, 20), ten = v_iset(1023), three = v_imul(line, v_iset(3));
+    const v_float other = v_from_bits(v_iadd(v_shl(v_isub(code, v_iset(1)), 15), v_iset((int32_t)TYNI_ENTRY_FLOOR + 0x4000)));
+    const v_float off = v_abs(at - other), limit = f->threshold * v_min(at, other);
+    const v_float low = v_to_float(v_iand(entry, ten)) * (1.0f / 1023.0f);
+    const v_float high = v_to_float(v_iand(v_shr(entry, 10), ten)) * (1.0f / 1023.0f);
+    v_float ratio = limit / off;
+    ratio = ratio * ratio;
+    ratio = v_select(v_le(off, limit), v_set(1.0f), ratio * ratio);
+    weight = v_select(v_ieq(code, v_iset(0)), v_set(0.0f), weight * ratio);
+    s->weight = s->weight + weight;
+    s->low = s->low + weight * (low * low * v_gather(f->scales[0], three));
+    s->high = s->high + weight * (high * high * v_gather(f->scales[0] + 1, three));
+}
+
+/* Pixels first .. end - 1 of the run, all in one sector of the shear grid. */
+static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first,
+                                               int32_t end)
+{
+    const tyni_slices *g = &p->slices;
+    const float py = (float)r->y + 0.5f, dy = py * g->ew - g->ey, inverse = 1.0f / sector->spacing;
+    const float slant = (sector->border - py) / dy;
+    const int32_t last = sector->count - 2, most = p->lines.pitch - 1;
+    int32_t shift = 0;
+    if (sector->count < 2)
+        return; /* no slices at all */
+    while (1 << shift < g->stride)
+        shift++;
+    for (int32_t i = first; i < end; i += v_n) {
+        const int32_t n = end - i;
+        const v_int x = v_iadd(v_iset(r->x + i), v_index());
+        const v_float px = v_to_float(x) + 0.5f, dx = px * g->ew - g->ex, to = v_load_n(r->to + i, n);
+        v_float at = to / (v_load_n(r->length + i, n) * p->view.far_depth), k, f, along;
+        v_int line, sample, part;
+        TYNI_V(pixel_sum) s = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
+        v_mask wanted = v_mand(v_first(n), v_gt(to, v_set(0.0f))), fits;
+        if (v_none(wanted))
+            continue;
+        at = v_max(at, v_set(TYNI_ENTRY_NEAREST));
+        if (sector->along_y)
+            k = px + dx * slant;
+        else
+            k = py + dy * (sector->border - px) / dx;
+        k = v_clamp((k - sector->first) * inverse, v_set(0.0f), v_set((float)(sector->count - 1)));
+        line = v_imin(v_trunc(k), v_iset(last));
+        f = k - v_to_float(line);
+        line = v_iadd(line, v_iset(sector->start));
+        part = sector->along_y ? v_iset(r->y) : v_imin(x, v_iset(g->width - 1));
+        sample = v_shr(part, shift);
+        if (!shift) {
+            TYNI_V(pixel_tap)(&s, &p->lines, line, sample, at, 1.0f - f);
+            TYNI_V(pixel_tap)(&s, &p->lines, v_iadd(line, v_iset(1)), sample, at, f);
+        } else {
+            const v_int next = v_imin(v_iadd(sample, v_iset(1)), v_iset(most)), beside = v_iadd(line, v_iset(1));
+            along = v_to_float(v_iand(part, v_iset(g->stride - 1))) * (1.0f / (float)g->stride);
+            TYNI_V(pixel_tap)(&s, &p->lines, line, sample, at, (1.0f - f) * (1.0f - along));
+            TYNI_V(pixel_tap)(&s, &p->lines, beside, sample, at, f * (1.0f - along));
+            TYNI_V(pixel_tap)(&s, &p->lines, line, next, at, (1.0f - f) * along);
+            TYNI_V(pixel_tap)(&s, &p->lines, beside, next, at, f * along);
+        }
+        fits = v_mand(wanted, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
+        v_store_n(r->value[0] + i, v_select(fits, s.low / s.weight, v_set(0.0f)), n);
+        v_store_n(r->value[1] + i, v_select(fits, s.high / s.weight, v_set(0.0f)), n);
+        for (uint32_t bits = v_word(v_mandnot(wanted, fits)); bits; bits &= bits - 1) {
+            const int32_t j = i + tyni_ctz32(bits);
+            r->rejected[j >> 5] |= 1u << (j & 31);
+        }
+    }
+}
+
+/* between() */
+TYNI_V_INLINE v_float TYNI_V(pixel_between)(v_float a, v_float b, float blend)
+{
+    const v_float least = v_min(a, b), straight = a + (b - a) * blend;
+    const v_mask near = v_mor(v_le(least, v_set(0.0f)), v_le(v_abs(a - b), 0.1f * least));
+    if (v_all(near))
+        return straight;
+    return v_select(near, straight, a * v_exp(blend * v_log(b / a)));
+}
+
+/* What the medium scatters towards the camera: tyni_medium_mix in channel c. */
+TYNI_V_INLINE void TYNI_V(pixel_mix)(const tyni_medium *m, v_float cosine, v_float mix[3])
+{
+    for (int32_t c = 0; c < 3; c++)
+        mix[c] = m->isotropic[c] + m->rayleigh[c] * (1.0f + cosine * cosine);
+    for (int32_t i = 0; i < m->hg_count; i++) {
+        const float g = m->hg[i].g;
+        const v_float d = v_max((1.0f - g) * (1.0f - g) + (2.0f * g) * (1.0f - cosine), v_set(1e-12f));
+        const v_float f = 1.0f / (d * v_sqrt(d));
+        for (int32_t c = 0; c < 3; c++)
+            mix[c] = mix[c] + m->hg[i].scale[c] * f;
+    }
+}
+
+/* Bits i .. i + v_n - 1, i a multiple of v_n, as a mask. */
+TYNI_V_INLINE v_mask TYNI_V(pixel_bits)(const uint32_t *words, int32_t i)
+{
+    static const int32_t bit[16] = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+    const v_int all = v_iset((int32_t)(words[i >> 5] >> (i & 31) & 0xffffu));
+    return v_igt(v_iand(all, v_iload(bit)), v_iset(0));
+}
+
+/* Visibility times the light of the sun that would be there without shadows. The phase function comes in here, last: it varies
+ * fast near the epipole (IVB section 6.8). */
+static TYNI_V_TARGET void TYNI_V(pixel_shade)(const tyni_pass *p, const run *r)
+{
+    const tyni_medium *m = &p->medium;
+    const float *colour = p->lamp->colour;
+    for (int32_t i = 0; i < r->count; i += v_n) {
+        const v_float from = v_load(r->from + i), to = v_load(r->to + i);
+        const v_mask wanted = v_mandnot(v_gt(to, v_set(0.0f)), TYNI_V(pixel_bits)(r->rejected, i));
+        v_float mix[3], light[3];
+        if (v_none(wanted))
+            continue;
+        TYNI_V(pixel_mix)(m, v_load(r->cosine + i), mix);
+        for (int32_t c = 0; c < 3; c++)
+            light[c] = v_load(r->value[c] + i);
+        if (p->count != 3) {
+            const v_float low = light[0], high = light[1];
+            light[m->low] = low;
+            light[m->high] = high;
+            light[m->middle] = TYNI_V(pixel_between)(low, high, m->blend);
+        }
+        for (int32_t c = 0; c < 3; c++) {
+            v_float norm = to * v_fog(m->sigma[c] * to);
+            if (tyni_view_bounded(p->lamp))
+                norm = norm - from * v_fog(m->sigma[c] * from);
+            v_store(r->light[c] + i,
+                    v_load(r->light[c] + i) + v_select(wanted, light[c] * norm * (mix[c] * colour[c]), v_set(0.0f)));
+        }
+    }
+}
+
+/* e^(-extinction s) */
+static TYNI_V_TARGET void TYNI_V(pixel_share)(const tyni_pass *p, const run *r, float *const share[3])
+{
+    for (int32_t i = 0; i < r->count; i += v_n) {
+        const v_float s = v_load(r->reach + i);
+        for (int32_t c = 0; c < 3; c++)
+            v_store(share[c] + i, v_exp(-p->fog[c] * s));
+    }
+}
+
+static TYNI_V_TARGET void TYNI_V(pixel_blend)(const run *r, float *const colour[3], float *const share[3])
+{
+    for (int32_t c = 0; c < 3; c++)
+        for (int32_t i = 0; i < r->count; i += v_n)
+            v_store(colour[c] + i, v_load(share[c] + i) * v_load(colour[c] + i) + v_load(r->light[c] + i));
+}
