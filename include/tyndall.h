@@ -436,7 +436,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
     (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) +                                \
      ((textured) ? TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 2) : 0) + TYNI_BYTES(slices, 12) +        \
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
-     (size_t)(workers) * (TYN_ROW_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) +                    \
+     (size_t)(workers) * (TYN_ROW_BYTES + TYN_BUNDLE_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) + \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           11 * TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4) +                                 \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
@@ -456,6 +456,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_CONTEXT_BYTES 2560
 #define TYN_STATS_BYTES 256
 #define TYN_ROW_BYTES 1216
+#define TYN_BUNDLE_BYTES 3264
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_RUN(samples) ((size_t)((samples) < 256 ? (samples) : 256))
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))

@@ -29,6 +29,7 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
         s->value[i] = tyni_arena_take(&arena, samples, sizeof *s->value[i]);
     for (int32_t i = 0; i < TYNI_PASS_PLANES; i++)
         s->plane[i] = tyni_arena_take(&arena, (size_t)tyni_pass_run(c), sizeof *s->plane[i]);
+    s->bundle = tyni_arena_take(&arena, 1, TYN_BUNDLE_BYTES);
     s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);

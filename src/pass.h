@@ -6,6 +6,7 @@
 #include "gather.h"
 #include "jobs.h"
 #include "medium.h"
+#include "ray.h"
 #include "row.h"
 #include "slice.h"
 #include "sweep.h"
@@ -26,6 +27,7 @@ typedef struct tyni_scratch {
     float *depth;                    /* samples */
     float *value[3];                 /* samples: visibility */
     float *plane[TYNI_PASS_PLANES];  /* tyni_pass_run each, for pixels */
+    tyni_bundle *bundle;             /* rays side by side */
     uint32_t *breaks, *rays, *fresh; /* bits */
     tyni_node *nodes;                /* TYN_RAYS_TREE, else NULL */
     tyni_sweep sweep;                /* arrays with TYN_RAYS_SWEEP, else NULL */

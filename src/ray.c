@@ -2,140 +2,180 @@
 #include "ray.h"
 
 #include "base.h"
+#include "lanes/lanes.h"
 #include "line.h"
 #include "meter.h"
 
-/* A ray in one piece of the row. */
+#define TYNI_KERNEL "ray_kernel.h"
+#include "lanes/each.h"
+
+/* ---- where a ray goes into the light and out of it ------------------------------------------------------------------ */
+
+#define WORDS 16 /* of visibility at a time */
+#define EDGES 64 /* at a time: more than a word can have */
+
+/* A ray in one piece of the row, and how far the search has come. */
 typedef struct crossing {
     const tyni_piece *piece;
-    tyni_line r, w;
     float from, to; /* step coordinates where it comes in and leaves */
     int32_t first, last;
     uint32_t position;
-    tyni_meter *meter;
+    int32_t next;  /* the column that is looked at next; behind last: all were */
+    int lit;       /* before it */
+    int32_t level; /* of the tree */
+    int32_t looked;
 } crossing;
 
-/* Step coordinates of the ray's ends, of its part in front of the map. 0: none is. */
-static int row_span(tyni_line r, tyni_line w, float part[2], float *from, float *to)
+/* `lit`: before the first column, where the search starts. */
+static void crossing_begin(crossing *c, const tyni_piece *piece, float from, float to, uint32_t position, int lit)
+{
+    int32_t a = tyni_clampi((int32_t)from, 0, piece->steps - 1), b = tyni_clampi(tyni_ceili(to) - 1, a, piece->steps - 1);
+    c->piece = piece;
+    c->from = from;
+    c->to = to;
+    c->first = 2 * a + (from - (float)a >= piece->split[a]);
+    c->last = 2 * b + (to - (float)b > piece->split[b]);
+    c->position = position;
+    c->next = c->first;
+    c->lit = lit;
+    c->level = 0;
+    c->looked = 0;
+}
+
+/* Where column i begins for the ray: the first one where it comes in. */
+static float edge_of(const crossing *c, int32_t i)
+{
+    return i <= c->first ? tyni_maxf(c->from, 0.0f) : tyni_row_edge(c->piece, i);
+}
+
+/* IVB's march without its tree. */
+static int32_t each_column(crossing *c, float *at)
+{
+    int32_t n = 0, start = c->next;
+    for (; c->next <= c->last && n < EDGES; c->next++)
+        if ((c->position < c->piece->threshold[c->next]) != c->lit) {
+            c->lit = !c->lit;
+            at[n++] = edge_of(c, c->next);
+        }
+    c->looked += c->next - start;
+    return n;
+}
+
+/* IVB's march with its tree. */
+static int32_t descend(crossing *c, const tyni_finder *finder, float *at)
+{
+    int32_t n = 0, top;
+    while (c->next <= c->last && n < EDGES) {
+        int32_t i = c->piece->first + c->next;
+        int lit;
+        c->looked += tyni_tree_span(finder->tree, finder->row->threshold, c->position, i, &c->level, &top, &lit);
+        if (lit != c->lit) {
+            c->lit = lit;
+            at[n++] = edge_of(c, c->next);
+        }
+        c->next += 1 << c->level;
+    }
+    return n;
+}
+
+/* The transitions of a word of visibility that begins at column i. */
+static int32_t transitions(crossing *c, int32_t i, uint32_t bits, float *at)
+{
+    int32_t left = c->last - i + 1, n = 0;
+    uint32_t changes = bits ^ (bits << 1 | (uint32_t)c->lit);
+    if (left < 32)
+        changes &= (1u << left) - 1u;
+    for (; changes; changes &= changes - 1) {
+        c->lit = !c->lit;
+        at[n++] = edge_of(c, i + tyni_ctz32(changes));
+    }
+    return n;
+}
+
+/* 32 columns at a time: words of visibility, made by compares or kept by the sweep, and their transitions by bit scans. */
+static int32_t packed_words(crossing *c, const tyni_finder *finder, float *at)
+{
+    uint32_t words[WORDS];
+    int32_t n = 0, w = 0, count = tyni_mini((c->last - c->next) / 32 + 1, WORDS);
+    const uint16_t *threshold = c->piece->threshold + c->next;
+    if (finder->rays == TYN_RAYS_SWEEP) {
+        for (int32_t k = 0; k < count; k++)
+            words[k] = tyni_sweep_word(finder->sweep, c->piece->first + c->next + 32 * k);
+    } else {
+        TYNI_LANES_CALL(finder->isa, ray_compare, (threshold, count, c->position, words));
+    }
+    for (; w < count && n <= EDGES - 32; w++, c->next += 32)
+        n += transitions(c, c->next, words[w], at + n);
+    c->looked += w;
+    return n;
+}
+
+/* The next edges, at most EDGES; all are found when c->next is behind c->last. */
+static int32_t find(crossing *c, const tyni_finder *finder, float *at)
+{
+    if (finder->rays == TYN_RAYS_TREE)
+        return descend(c, finder, at);
+    return finder->rays == TYN_RAYS_COLUMNS ? each_column(c, at) : packed_words(c, finder, at);
+}
+
+/* Where the last column ends, back to what is outside. */
+static float end_of(const crossing *c)
+{
+    return tyni_minf(c->to, (float)c->piece->steps);
+}
+
+/* ---- one ray -------------------------------------------------------------------------------------------------------- */
+
+/* Step coordinates of the ray's ends, of its part in front of the map and on the piece. 0: none is. */
+static int row_span(const tyni_piece *piece, tyni_line r, tyni_line w, const tyni_integral *it, float *from, float *to)
 {
     tyni_line edge = w;
+    float part[2];
+    part[0] = it->t0;
+    part[1] = it->t1;
     edge.c -= 1e-6f;
     tyni_line_clip(edge, part);
     if (!(part[0] < part[1]))
         return 0;
-    *from = tyni_line_at(r, part[0]) / tyni_line_at(w, part[0]);
-    *to = tyni_line_at(r, part[1]) / tyni_line_at(w, part[1]);
-    return 1;
-}
-
-static int crossing_begin(crossing *c, const tyni_piece *piece, const tyni_integral *it, const tyni_sight *v)
-{
-    float part[2];
-    int32_t a, b;
-    c->piece = piece;
-    c->r = tyni_line_along(&piece->r, v);
-    c->w = tyni_line_along(&piece->w, v);
-    part[0] = it->t0;
-    part[1] = it->t1;
-    if (!row_span(c->r, c->w, part, &c->from, &c->to))
-        return 0;
     /* a piece's columns begin and end inside its first and last step where another piece goes on */
-    c->from = tyni_maxf(c->from, piece->from);
-    c->to = tyni_minf(c->to, piece->to);
-    if (!(c->from < c->to))
-        return 0;
-    a = tyni_clampi((int32_t)c->from, 0, piece->steps - 1);
-    b = tyni_clampi(tyni_ceili(c->to) - 1, a, piece->steps - 1);
-    c->first = 2 * a + (c->from - (float)a >= piece->split[a]);
-    c->last = 2 * b + (c->to - (float)b > piece->split[b]);
-    return 1;
+    *from = tyni_maxf(tyni_line_at(r, part[0]) / tyni_line_at(w, part[0]), piece->from);
+    *to = tyni_minf(tyni_line_at(r, part[1]) / tyni_line_at(w, part[1]), piece->to);
+    return *from < *to;
 }
 
 /* t of a step coordinate. */
-static float border_t(const crossing *c, float at)
+static float edge_t(float at, float rc, float rd, float wc, float wd)
 {
-    return (at * c->w.c - c->r.c) / (c->r.d - at * c->w.d);
-}
-
-/* From column i on it is lit, or not. The first column begins where the ray comes in. */
-static void switch_at(const crossing *c, int32_t i, int lit)
-{
-    tyni_meter *m = c->meter;
-    if (lit != (m->on ^ m->outside))
-        tyni_meter_lit(m, lit, border_t(c, i <= c->first ? tyni_maxf(c->from, 0.0f) : tyni_row_edge(c->piece, i)));
-}
-
-/* IVB's march without its tree. */
-static int32_t each_column(const crossing *c)
-{
-    for (int32_t i = c->first; i <= c->last; i++)
-        switch_at(c, i, c->position < c->piece->threshold[i]);
-    return c->last - c->first + 1;
-}
-
-/* Visibility of n columns from i on; the other bits are 0. */
-static uint32_t compare(const uint16_t *threshold, int32_t n, uint32_t position)
-{
-    uint32_t bits = 0;
-    for (int32_t b = 0; b < n; b++)
-        bits |= (uint32_t)(position < threshold[b]) << b;
-    return bits;
-}
-
-/* 32 columns at a time: a word of visibility, made by compares or kept by the sweep, and its transitions by bit scans. */
-static int32_t packed_words(const crossing *c, const tyni_sweep *sweep)
-{
-    int32_t words = 0;
-    for (int32_t i = c->first; i <= c->last; i += 32, words++) {
-        int32_t n = tyni_mini(32, c->last - i + 1);
-        uint32_t bits, changes;
-        bits = sweep ? tyni_sweep_word(sweep, c->piece->first + i) : compare(c->piece->threshold + i, n, c->position);
-        switch_at(c, i, (int)(bits & 1u));
-        changes = bits ^ (bits << 1 | (bits & 1u));
-        if (n < 32)
-            changes &= (1u << n) - 1u;
-        for (; changes; changes &= changes - 1) {
-            int32_t k = tyni_ctz32(changes);
-            switch_at(c, i + k, (int)(bits >> k & 1u));
-        }
-    }
-    return words;
-}
-
-/* IVB's march with its tree. */
-static int32_t descend(const crossing *c, const tyni_finder *finder)
-{
-    int32_t i = c->piece->first + c->first, end = c->piece->first + c->last, level = 0, looked = 0, top;
-    int lit;
-    for (; i <= end; i += 1 << level) {
-        looked += tyni_tree_span(finder->tree, finder->row->threshold, c->position, i, &level, &top, &lit);
-        switch_at(c, i - c->piece->first, lit);
-    }
-    return looked;
+    return (at * wc - rc) / (rd - at * wd);
 }
 
 int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v,
                      float *light)
 {
     const tyni_row *row = finder->row;
+    uint32_t position = tyni_row_position(row, p);
     int32_t looked = 0;
+    float at[EDGES], from, to;
     tyni_meter m;
     crossing c;
     tyni_meter_begin(&m, it, lamp, v, light);
     if (!(it->t0 < it->t1))
         return 0;
-    c.position = tyni_row_position(row, p);
-    c.meter = &m;
     for (int32_t i = 0; i < row->count; i++) {
-        if (!crossing_begin(&c, &row->pieces[i], it, v))
+        tyni_line r = tyni_line_along(&row->pieces[i].r, v), w = tyni_line_along(&row->pieces[i].w, v);
+        int lit = m.outside;
+        if (!row_span(&row->pieces[i], r, w, it, &from, &to))
             continue;
-        if (finder->rays == TYN_RAYS_TREE)
-            looked += descend(&c, finder);
-        else if (finder->rays == TYN_RAYS_COLUMNS)
-            looked += each_column(&c);
-        else
-            looked += packed_words(&c, finder->rays == TYN_RAYS_SWEEP ? finder->sweep : NULL);
-        tyni_meter_lit(&m, m.outside, border_t(&c, tyni_minf(c.to, (float)c.piece->steps)));
+        crossing_begin(&c, &row->pieces[i], from, to, position, m.outside);
+        while (c.next <= c.last) {
+            int32_t n = find(&c, finder, at);
+            for (int32_t k = 0; k < n; k++) {
+                lit = !lit;
+                tyni_meter_lit(&m, lit, edge_t(at[k], r.c, r.d, w.c, w.d));
+            }
+        }
+        looked += c.looked;
+        tyni_meter_lit(&m, m.outside, edge_t(end_of(&c), r.c, r.d, w.c, w.d));
     }
     tyni_meter_end(&m);
     return looked;
@@ -145,26 +185,91 @@ int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *it, const tyn
                      float *from, float *to)
 {
     crossing c;
-    if (!crossing_begin(&c, piece, it, v))
+    if (!row_span(piece, tyni_line_along(&piece->r, v), tyni_line_along(&piece->w, v), it, from, to))
         return 0;
+    crossing_begin(&c, piece, *from, *to, 0, 0);
     *first = c.first;
     *last = c.last;
-    *from = c.from;
-    *to = c.to;
     return 1;
 }
 
 int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, const tyni_sight *v)
 {
-    float part[2], from, to, texels = 0.0f, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
+    float from, to, texels = 0.0f, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
     if (row->count < 1)
         return 0;
     for (int32_t i = 0; i < row->count; i++) {
-        part[0] = it->t0;
-        part[1] = it->t1;
-        if (row_span(tyni_line_along(&row->pieces[i].r, v), tyni_line_along(&row->pieces[i].w, v), part, &from, &to))
-            texels += tyni_maxf(tyni_minf(to, row->pieces[i].to) - tyni_maxf(from, row->pieces[i].from), 0.0f);
+        const tyni_piece *piece = &row->pieces[i];
+        if (row_span(piece, tyni_line_along(&piece->r, v), tyni_line_along(&piece->w, v), it, &from, &to))
+            texels += to - from;
     }
     /* a texel's share of the light, at most: 1 / texels in thin air, its optical depth in thick */
     return tyni_maxf(1.0f, depth) > 0.05f * texels;
+}
+
+/* ---- bundles -------------------------------------------------------------------------------------------------------- */
+
+void tyni_ray_bundle(tyni_bundle *b, int32_t isa, const tyni_slice *slice, const tyni_view *view, float most,
+                     const float sigma[2])
+{
+    TYNI_LANES_CALL(isa, ray_begin, (b, slice, view, most, sigma));
+    b->edges = 0;
+}
+
+/* The integrals of the edges that wait, and their sums in order. */
+static void settle(tyni_bundle *b, int32_t isa, const float sigma[2], int32_t channels)
+{
+    TYNI_LANES_CALL(isa, ray_integrals, (b, sigma, channels));
+    for (int32_t k = 0; k < channels; k++)
+        for (int32_t i = 0; i < b->edges; i++) {
+            float *sum = &b->sum[k][b->ray[i]];
+            *sum = b->on[i] ? *sum - b->value[k][i] : *sum + b->value[k][i];
+        }
+    b->edges = 0;
+}
+
+/* Edges of ray n; `on`: it goes to what differs from outside at the first of them. */
+static void wait(tyni_bundle *b, int32_t n, const float *at, int32_t count, int on)
+{
+    for (int32_t k = 0; k < count; k++, on = !on) {
+        int32_t i = b->edges + k;
+        b->t[i] = tyni_clampf(edge_t(at[k], b->rc[n], b->rd[n], b->wc[n], b->wd[n]), 0.0f, b->to[n]);
+        b->ray[i] = (uint8_t)n;
+        b->on[i] = (uint8_t)on;
+    }
+    b->edges += count;
+}
+
+static int32_t cross(tyni_bundle *b, int32_t n, const tyni_finder *finder, const tyni_piece *piece, int outside,
+                     const float sigma[2], int32_t channels)
+{
+    uint32_t position = tyni_row_position(finder->row, b->p[n]);
+    float at[EDGES + 1];
+    int on = 0;
+    crossing c;
+    crossing_begin(&c, piece, b->from[n], b->until[n], position, outside);
+    while (c.next <= c.last) {
+        int32_t count = find(&c, finder, at);
+        if (c.next > c.last && c.lit != outside)
+            at[count++] = end_of(&c);
+        if (b->edges + count > TYNI_RAY_EDGES)
+            settle(b, finder->isa, sigma, channels);
+        wait(b, n, at, count, !on);
+        on ^= count & 1;
+    }
+    return c.looked;
+}
+
+int32_t tyni_ray_bundle_row(tyni_bundle *b, const tyni_finder *finder, int outside, const float sigma[2], int32_t channels)
+{
+    int32_t looked = 0;
+    for (int32_t i = 0; i < finder->row->count; i++) {
+        const tyni_piece *piece = &finder->row->pieces[i];
+        TYNI_LANES_CALL(finder->isa, ray_spans, (b, piece));
+        for (int32_t n = 0; n < b->count; n++)
+            if (b->from[n] < b->until[n])
+                looked += cross(b, n, finder, piece, outside, sigma, channels);
+        settle(b, finder->isa, sigma, channels);
+    }
+    return looked;
 }

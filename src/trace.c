@@ -70,8 +70,8 @@ static void row_value(const tyni_pass *p, const tyni_finder *finder, const tyni_
     tyni_pass_visible(p, light, norm, value);
 }
 
-/* The rays of the set bits. */
-static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
+/* The rays of the set bits, one at a time. */
+static void run_each(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
                      tyni_scratch *s)
 {
     for (int32_t j = tyni_sample_next(rays, slice->first, slice->last); j <= slice->last;
@@ -92,11 +92,78 @@ static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_fin
     }
 }
 
+/* What a bundle has found, as visibility of the samples. */
+static void take_bundle(const tyni_pass *p, const tyni_slice *slice, const tyni_bundle *b, const int32_t *samples,
+                        const float sigma[2], tyni_scratch *s)
+{
+    for (int32_t n = 0; n < b->count; n++) {
+        int32_t j = samples[n];
+        float value[3];
+        if (b->texels[n] > 0.0f && tyni_ray_bundle_coarse(b, n, sigma[p->count - 1])) {
+            tyni_sight v;
+            float length = tyni_slice_sight(slice, &p->view, b->p[n], &v);
+            tyni_pass_walk(p, &v, s->depth[j] * length, value);
+            s->stats->walks++;
+        } else {
+            for (int32_t k = 0; k < p->count; k++) {
+                float all = b->all[k][n], lit = p->lamp->outside ? all - b->sum[k][n] : b->sum[k][n];
+                value[k] = all > 0.0f ? tyni_clampf(lit, 0.0f, all) / all : 0.0f;
+            }
+            if (p->count == 1)
+                value[1] = value[0];
+        }
+        s->value[0][j] = value[0];
+        s->value[1][j] = value[1];
+        s->value[2][j] = 0.0f;
+    }
+    s->stats->rays += b->count;
+}
+
+/* The rays of the set bits, side by side. */
+static void run_bundles(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
+                        tyni_scratch *s)
+{
+    const int32_t most = finder->rays == TYN_RAYS_SWEEP ? 1 : TYNI_RAY_BUNDLE;
+    int32_t samples[TYNI_RAY_BUNDLE], j = tyni_sample_next(rays, slice->first, slice->last);
+    tyni_bundle *b = s->bundle;
+    float sigma[2];
+    sigma[0] = p->medium.sigma[p->channels[0]];
+    sigma[1] = p->medium.sigma[p->channels[p->count - 1]];
+    while (j <= slice->last) {
+        b->count = 0;
+        for (; j <= slice->last && b->count < most; j = tyni_sample_next(rays, j + 1, slice->last)) {
+            b->p[b->count] = tyni_slice_p(slice, j);
+            b->depth[b->count] = s->depth[j];
+            samples[b->count++] = j;
+        }
+        for (int32_t n = b->count; n < TYNI_RAY_BUNDLE; n++) {
+            b->p[n] = b->p[b->count - 1];
+            b->depth[n] = b->depth[b->count - 1];
+        }
+        tyni_ray_bundle(b, finder->isa, slice, &p->view, p->frame->max_distance, sigma);
+        if (finder->rays == TYN_RAYS_SWEEP)
+            tyni_sweep_to(&s->sweep, samples[0]);
+        s->stats->looked += tyni_ray_bundle_row(b, finder, p->lamp->outside, sigma, p->count);
+        take_bundle(p, slice, b, samples, sigma, s);
+    }
+}
+
+static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
+                     tyni_scratch *s)
+{
+    int plain = p->lamp->kind == TYN_LIGHT_DIRECTIONAL && !p->lamp->coloured && p->lamp->lift == 0.0f && p->count < 3;
+    if (plain && finder->rays != TYN_RAYS_STEPS)
+        run_bundles(p, slice, finder, rays, s);
+    else
+        run_each(p, slice, finder, rays, s);
+}
+
 /* The row and what the finder needs of it. */
 static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch *s, tyni_finder *finder, tyni_tree *tree)
 {
     const tyn_config *config = &p->context->config;
     finder->row = s->row;
+    finder->isa = config->isa;
     finder->rays = config->rays;
     finder->tree = tree;
     finder->sweep = &s->sweep;

@@ -16,6 +16,7 @@
 /* A context takes as much room as TYN_MEMORY says. */
 typedef char context_fits[sizeof(struct tyn_context) <= TYN_CONTEXT_BYTES ? 1 : -1];
 typedef char row_fits[sizeof(tyni_row) <= TYN_ROW_BYTES ? 1 : -1];
+typedef char bundle_fits[sizeof(tyni_bundle) <= TYN_BUNDLE_BYTES ? 1 : -1];
 typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
 
 static void place(tyn_context *context, tyni_arena *arena)

@@ -1,0 +1,66 @@
+/* test_isa.c - whole frames are the same bytes on every ISA of this machine: every light, method and format. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "rig.h"
+#include "stock.h"
+#include "test.h"
+
+enum { W = 45, H = 31, PIXELS = W * H }; /* no multiple of any vector */
+
+static const tyn_format targets[] = {TYN_RGBA8_SRGB, TYN_BGRA8_SRGB, TYN_RGB565_SRGB, TYN_RGB_F32};
+
+typedef struct picture {
+    float scatter[3 * PIXELS], transmittance[3 * PIXELS], target[3 * PIXELS];
+} picture;
+
+static void draw(rig *r, tyn_config *config, int isa, int n, picture *out)
+{
+    tyn_frame frame = rig_frame(r);
+    memset(out, 0x77, sizeof *out);
+    config->isa = isa;
+    frame.scatter.pixels = out->scatter;
+    frame.transmittance = frame.scatter;
+    frame.transmittance.pixels = out->transmittance;
+    frame.target.pixels = out->target;
+    frame.target.format = targets[n % 4];
+    frame.display.dither = n & 1;
+    frame.display.tone = n & 2 ? TYN_TONE_FILM : TYN_TONE_CLAMP;
+    frame.fog_scale = n % 5 == 4 ? 0.5f : 0;
+    frame.max_distance = n % 5 == 3 ? 9.0f : 0;
+    CHECK(rig_render(r, config, &frame) == TYN_OK);
+}
+
+static void test_one(int32_t isa)
+{
+    char text[80];
+    snprintf(text, sizeof text, "frames by %s are the scalar ones", tyn_isa_name(isa));
+    test_begin(text);
+    if (!(tyn_isa_available() & isa)) {
+        test_skip(tyn_isa_built() & isa ? "this machine lacks it" : "it is not built in");
+        return;
+    }
+    for (int n = 0; n < stock_count; n++) {
+        static picture scalar, other;
+        oracle_scene *scene = stock_new(stock_list[n].name, W, H);
+        rig *r = rig_new(scene, 120);
+        for (int way = n % 2; r && way < RIG_WAYS; way += 2) {
+            tyn_config config = rig_way_config(r, &rig_ways[way]);
+            config.samples = n % 3 == 2 ? 40 : 0; /* each second column */
+            draw(r, &config, TYN_ISA_SCALAR, n + way, &scalar);
+            draw(r, &config, isa, n + way, &other);
+            if (memcmp(&scalar, &other, sizeof scalar) != 0)
+                printf("  %s, %s\n", stock_list[n].name, rig_ways[way].name);
+            CHECK(memcmp(&scalar, &other, sizeof scalar) == 0);
+        }
+        rig_free(r);
+        model_free(scene);
+    }
+}
+
+void test_isa(void)
+{
+    for (int32_t isa = TYN_ISA_SSE2; isa <= TYN_ISA_WASM; isa *= 2)
+        test_one(isa);
+}
