@@ -236,7 +236,8 @@ typedef struct tyn_shadow {
                               all that is seen: multiplies it. A texture as in tyn_light, over the whole map; NULL: white */
     int32_t height;        /* rows, 1 .. TYN_MAX_SHADOW; 0: as many as `size` */
     tyn_format format;     /* TYN_DEPTH_F32, also by 0, or TYN_DEPTH_U16: value / 65535, with TYN_MAP_LINEAR value * scale */
-    ptrdiff_t stride;      /* bytes from row to row, as of tyn_image: 0: without a gap; negative: bottom row first */
+    ptrdiff_t stride;      /* bytes from row to row, as of tyn_image: 0: without a gap; negative: bottom row first. All of a map
+                              spans less than 2 GiB */
     tyn_map_coding coding;
     float at_near, at_far; /* projected, and linear under a parallel matrix: as in tyn_depth_coding; both 0: 0, 1. Linear under
                               a perspective one: what lies at at_far or beyond is nothing; 0: of U16 what is stored as 65535 */

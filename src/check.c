@@ -131,6 +131,9 @@ static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)
         return TYN_E_LIGHT;
     if (s->stride && (s->stride < 0 ? -s->stride : s->stride) < (ptrdiff_t)s->size * bytes)
         return TYN_E_LIGHT;
+    /* offsets into a map are 32 bits */
+    if ((s->stride < 0 ? -s->stride : s->stride) > (ptrdiff_t)(INT32_MAX / height))
+        return TYN_E_LIGHT;
     return s->size > limit || height > limit ? TYN_E_LIMIT : TYN_OK;
 }
 

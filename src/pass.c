@@ -6,6 +6,7 @@
 #include "base.h"
 #include "border.h"
 #include "entry.h"
+#include "lanes/lanes.h"
 #include "sample.h"
 #include "walk.h"
 
@@ -130,6 +131,9 @@ void tyni_pass_visible(const tyni_pass *p, const float light[3], const float nor
         value[1] = value[0];
 }
 
+#define TYNI_KERNEL "pass_kernel.h"
+#include "lanes/each.h"
+
 void tyni_pass_clear(const tyni_field *field, int32_t line)
 {
     memset(field->entries + (ptrdiff_t)line * field->pitch, 0, sizeof *field->entries * (size_t)field->pitch);
@@ -139,17 +143,13 @@ void tyni_pass_store(const tyni_pass *p, const tyni_field *field, int32_t line, 
                      const tyni_scratch *s)
 {
     uint32_t *entries = field->entries + (ptrdiff_t)line * field->pitch;
-    float *scale = field->scales[line], inverse[3], far_inverse = 1.0f / p->view.far_depth;
-    int32_t count = tyni_maxi(p->count, 2);
+    float *scale = field->scales[line], inverse[3];
+    int32_t count = tyni_maxi(p->count, 2), isa = p->context->config.isa;
     for (int32_t n = 0; n < count; n++) {
-        scale[n] = 0.0f;
-        for (int32_t j = first; j <= last; j++)
-            scale[n] = tyni_maxf(scale[n], s->value[n][j]);
+        TYNI_LANES_CALL(isa, pass_largest, (s->value[n], first, last, &scale[n]));
         inverse[n] = scale[n] > 1e-30f ? 1.0f / scale[n] : 0.0f;
     }
-    for (int32_t j = first; j <= last; j++)
-        if (s->depth[j] > 0.0f)
-            entries[j] = tyni_entry_pack(s->value[0][j], s->value[1][j], inverse, s->depth[j] * far_inverse);
+    TYNI_LANES_CALL(isa, pass_pack, (entries, s, first, last, inverse, 1.0f / p->view.far_depth));
     for (int32_t j = first; j <= last && count == 3; j++)
         field->thirds[(ptrdiff_t)line * field->pitch + j] = tyni_entry_third(s->value[2][j], inverse[2]);
 }

@@ -2,6 +2,7 @@
 #include "row.h"
 
 #include "base.h"
+#include "lanes/lanes.h"
 
 /* Columns of a slice as directions (n, d) in half a circle: n = x and d = 1 - y / distance, so that n / d is the tangent of the
  * column's angle seen from the light (or x itself for a directional light). They begin at (0, 1), the column through the
@@ -103,15 +104,6 @@ static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice,
     return 1;
 }
 
-static uint16_t threshold_of(float f0, float f1)
-{
-    if (!(f0 > 0.0f))
-        return 0; /* dark even at the lit end */
-    if (f1 > 0.0f)
-        return 65535;
-    return (uint16_t)(65534.0f * (f0 / (f0 - f1)) + 0.9999f);
-}
-
 /* The line on the map: starts at step coordinate 0, where it is at `minor`, and rises by `slope` a step. */
 typedef struct course {
     int32_t across; /* the major axis is u */
@@ -137,36 +129,30 @@ static void course_begin(course *c, const float u[2], const float v[2])
     c->steps = tyni_maxi(tyni_ceili(c->to), 1);
 }
 
-static uint16_t column(const ends *e, float g, float z)
+/* Texels of 16 bits, one by one: a vector's load would read beyond the last. */
+static void load16(const tyni_texels *t, const uint8_t *texels, const int32_t *offset, int32_t n, float *out)
 {
-    if (!(z > 0.0f))
-        return 65535; /* nothing there: lit */
-    return threshold_of(e->g[0] * g + e->z[0] * z + e->c[0], e->g[1] * g + e->z[1] * z + e->c[1]);
+    (void)t;
+    for (int32_t i = 0; i < n; i++)
+        out[i] = (float)*(const uint16_t *)(const void *)(texels + offset[i]);
 }
 
-static void fill(tyni_piece *piece, uint16_t *threshold, float *split, const tyni_map *map, const course *c, const ends *e)
+#define TYNI_KERNEL "row_kernel.h"
+#include "lanes/each.h"
+
+static void fill(tyni_piece *piece, uint16_t *threshold, float *split, int32_t isa, const tyni_map *map, const course *c,
+                 const ends *e)
 {
     const tyni_texels *t = &map->texels;
-    int32_t size = c->across ? t->width : t->height, sides = c->across ? t->height : t->width;
+    int32_t size = c->across ? t->width : t->height;
     int32_t first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
-    ptrdiff_t step = c->across ? t->bytes : t->pitch, pitch = c->across ? t->pitch : t->bytes;
-    const uint8_t *texel = t->pixels + step * first;
     piece->steps = tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
-    step = c->sign > 0.0f ? step : -step;
-    for (int32_t k = 0; k < piece->steps; k++, texel += step) {
-        float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * (float)(k + 1), cut = 1.0f;
-        int32_t a = tyni_clampi(tyni_floori(from), 0, sides - 1), b = tyni_clampi(tyni_floori(to), 0, sides - 1);
-        if (a != b) /* |slope| <= 1: they are neighbours */
-            cut = tyni_clampf(((float)tyni_maxi(a, b) - from) / c->slope, 0.0f, 1.0f);
-        split[k] = cut;
-        threshold[2 * k] = column(e, (float)k + 0.5f * cut, tyni_texels_z(t, texel + a * pitch));
-        threshold[2 * k + 1] =
-            a != b ? column(e, (float)k + 0.5f + 0.5f * cut, tyni_texels_z(t, texel + b * pitch)) : threshold[2 * k];
-    }
+    TYNI_LANES_CALL(isa, row_fill, (t, c, e, first, piece->steps, threshold, split));
 }
 
 /* Where thresholds are written. */
 typedef struct pen {
+    int32_t isa;
     uint16_t *threshold;
     float *split;
     size_t room;
@@ -193,7 +179,7 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
     piece->split = w->split;
     if (!ends_begin(&e, piece, slice, view, map, p))
         return;
-    fill(piece, w->threshold, w->split, map, &c, &e);
+    fill(piece, w->threshold, w->split, w->isa, map, &c, &e);
     row->count++;
     row->columns += 2 * piece->steps;
     w->threshold += 2 * piece->steps;
@@ -201,14 +187,14 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
     w->room -= (size_t)piece->steps;
 }
 
-void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
+void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
                     const tyni_lamp *lamp, const tyni_view *view, float reach)
 {
     /* what no map has covered yet: a local light's columns as two quarters, since half a circle cannot be clipped by lines */
     fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
     int32_t fans = lamp->kind == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
     float pa = tyni_slice_p(slice, slice->first), pb = tyni_slice_p(slice, slice->last), p[2], u[2], v[2];
-    pen w = {threshold, split, room};
+    pen w = {isa, threshold, split, room};
     int rising = (0.5f * (pa + pb) < slice->epipole) != lamp->behind; /* p rises towards the lit end */
     row->count = 0;
     row->columns = 0;

@@ -56,7 +56,7 @@ static inline size_t tyni_row_room(int32_t shadow_size, int32_t maps)
 
 /* Builds the row into `threshold` and `split`. `reach`: no view ray gets farther from the axis camera - light than this
  * (directional lights; what lies beyond is not built). */
-void tyni_row_build(tyni_row *row, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
+void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
                     const tyni_lamp *lamp, const tyni_view *view, float reach);
 
 /* 0 .. 65534 */

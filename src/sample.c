@@ -2,37 +2,39 @@
 #include "sample.h"
 
 #include "base.h"
+#include "lanes/lanes.h"
 
-void tyni_sample_depths(float *depth, const tyni_slice *slice, const tyni_view *view, const tyni_door *door)
+/* Pixels are read at offsets of 32 bits from the first of 16 samples; farther apart than this they are read one by one. */
+#define FAR_APART (1 << 30)
+
+#define TYNI_KERNEL "sample_kernel.h"
+#include "lanes/each.h"
+
+void tyni_sample_depths(float *depth, int32_t isa, const tyni_slice *slice, const tyni_view *view, const tyni_door *door)
 {
     const tyn_image *image = door->image;
-    ptrdiff_t stride = door->stride;
     int32_t last_p = (slice->along_y ? image->height : image->width) - 1;
     int32_t last_m = (slice->along_y ? image->width : image->height) - 1;
-    ptrdiff_t along = slice->along_y ? stride : (ptrdiff_t)sizeof(float);
-    ptrdiff_t across = slice->along_y ? (ptrdiff_t)sizeof(float) : stride;
+    float stride = (float)(door->stride < 0 ? -door->stride : door->stride);
+    if (door->plain && (16.0f * tyni_absf(slice->dp) + 18.0f) * (stride + 4.0f) < (float)FAR_APART) {
+        TYNI_LANES_CALL(isa, sample_depths, (depth, slice, view, door, last_p, last_m));
+        return;
+    }
     for (int32_t j = slice->first; j <= slice->last; j++) {
         float at = tyni_slice_p(slice, j), m = slice->m0 + slice->slope * at;
         int32_t p = (int32_t)tyni_clampf(at, 0.0f, (float)last_p);
         int32_t i = (int32_t)tyni_clampf(m, 0.0f, (float)last_m);
-        const uint8_t *pixel = (const uint8_t *)image->pixels + along * p + across * i;
-        if (door->plain)
-            depth[j] = tyni_view_depth(view, *(const float *)(const void *)pixel);
-        else
-            depth[j] = slice->along_y ? tyni_door_depth(door, i, p) : tyni_door_depth(door, p, i);
+        depth[j] = tyni_view_depth(view, slice->along_y ? tyni_door_depth(door, i, p) : tyni_door_depth(door, p, i));
     }
 }
 
-int32_t tyni_sample_breaks(uint32_t *breaks, const float *depth, int32_t first, int32_t last, float threshold)
+int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, int32_t first, int32_t last, float threshold)
 {
-    int32_t count = 0;
-    memset(breaks, 0, sizeof *breaks * (size_t)tyni_sample_words(last + 1));
-    for (int32_t j = first; j < last; j++) {
-        float a = depth[j], b = depth[j + 1];
-        int jump = tyni_absf(a - b) > threshold * tyni_minf(a, b);
-        breaks[j >> 5] |= (uint32_t)jump << (j & 31);
-        count += jump;
-    }
+    int32_t count = 0, words = tyni_sample_words(last + 1);
+    TYNI_LANES_CALL(isa, sample_breaks, (breaks, depth, first, last, threshold));
+    for (int32_t w = 0; w < words; w++)
+        for (uint32_t bits = breaks[w]; bits; bits &= bits - 1)
+            count++;
     return count;
 }
 
@@ -131,14 +133,7 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
     return count;
 }
 
-void tyni_sample_interpolate(float *value, const uint32_t *rays, int32_t first, int32_t last)
+void tyni_sample_interpolate(float *value, int32_t isa, const uint32_t *rays, int32_t first, int32_t last)
 {
-    int32_t a = first;
-    while (a < last) {
-        int32_t b = tyni_sample_next(rays, a + 1, last);
-        float step = (value[b] - value[a]) / (float)(b - a);
-        for (int32_t j = a + 1; j < b; j++)
-            value[j] = value[a] + step * (float)(j - a);
-        a = b;
-    }
+    TYNI_LANES_CALL(isa, sample_interpolate, (value, rays, first, last));
 }

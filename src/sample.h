@@ -18,12 +18,14 @@ static inline int tyni_sample_bit(const uint32_t *words, int32_t j)
     return (int)(words[j >> 5] >> (j & 31) & 1u);
 }
 
+/* Arrays over samples have room for whole vectors. isa: of tyni_lanes_choose. */
+
 /* depth[j] for first .. last: view-space depth of the pixel under each sample (the nearest on the screen), 0 .. far. */
-void tyni_sample_depths(float *depth, const tyni_slice *slice, const tyni_view *view, const tyni_door *door);
+void tyni_sample_depths(float *depth, int32_t isa, const tyni_slice *slice, const tyni_view *view, const tyni_door *door);
 
 /* Sets bit j where depth jumps between j and j + 1 by more than `threshold` of the nearer one; clears all others. Returns how
  * many. Samples off the screen are no part of first .. last, so the ends of a line need no breaks. */
-int32_t tyni_sample_breaks(uint32_t *breaks, const float *depth, int32_t first, int32_t last, float threshold);
+int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, int32_t first, int32_t last, float threshold);
 
 /* Sets the bits of the ray samples: every `step`th, every quarter of that near the epipole, both sides of every break, the
  * first and the last. Returns how many. */
@@ -41,6 +43,6 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
 
 /* Fills the samples between ray samples by linear interpolation of their sources, which are the ray samples on either side: a
  * break has rays on both sides, so that no pair of sources ever spans one. */
-void tyni_sample_interpolate(float *value, const uint32_t *rays, int32_t first, int32_t last);
+void tyni_sample_interpolate(float *value, int32_t isa, const uint32_t *rays, int32_t first, int32_t last);
 
 #endif

@@ -169,8 +169,8 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     finder->sweep = &s->sweep;
     if (config->rays == TYN_RAYS_STEPS)
         return;
-    tyni_row_build(s->row, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice, p->lamp, &p->view,
-                   reach_of(p, slice, s->depth));
+    tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,
+                   p->lamp, &p->view, reach_of(p, slice, s->depth));
     s->stats->columns += s->row->columns;
     if (config->rays == TYN_RAYS_TREE)
         tyni_tree_build(tree, s->nodes, s->row);
@@ -181,7 +181,7 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
 static void interpolate(const tyni_pass *p, const tyni_slice *slice, const tyni_scratch *s)
 {
     for (int32_t n = 0; n < tyni_maxi(p->count, 2); n++)
-        tyni_sample_interpolate(s->value[n], s->rays, slice->first, slice->last);
+        tyni_sample_interpolate(s->value[n], p->context->config.isa, s->rays, slice->first, slice->last);
 }
 
 /* Depth, breaks, initial rays; 0 if there is nothing to do. */
@@ -191,11 +191,12 @@ static int32_t sample_line(const tyni_pass *p, tyni_slice *slice, int32_t index,
     tyni_pass_line(p, slice, index);
     if (slice->first > slice->last)
         return 0;
-    tyni_sample_depths(s->depth, slice, &p->view, &p->depth);
+    tyni_sample_depths(s->depth, config->isa, slice, &p->view, &p->depth);
     if ((tyni_view_bounded(p->lamp) || p->frame->max_distance > 0.0f) && !clamp_to_volume(p, slice, s->depth))
         return 0;
     s->stats->samples += slice->last - slice->first + 1;
-    s->stats->breaks += tyni_sample_breaks(s->breaks, s->depth, slice->first, slice->last, config->break_threshold);
+    s->stats->breaks +=
+        tyni_sample_breaks(s->breaks, config->isa, s->depth, slice->first, slice->last, config->break_threshold);
     return tyni_sample_rays(s->rays, s->breaks, slice, config->initial_step);
 }
 

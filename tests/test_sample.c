@@ -44,7 +44,7 @@ static void check_line(const float *depth, int first, int last, int step)
     int32_t said;
     memset(breaks, 0xff, sizeof breaks);
     memset(rays, 0xff, sizeof rays);
-    said = tyni_sample_breaks(breaks, depth, first, last, threshold);
+    said = tyni_sample_breaks(breaks, TYN_ISA_SCALAR, depth, first, last, threshold);
     for (int j = first; j < last; j++)
         jumps += fabsf(depth[j] - depth[j + 1]) > threshold * fminf(depth[j], depth[j + 1]);
     CHECK(said == jumps);
@@ -120,7 +120,7 @@ static void test_dense(void)
     tyni_slice slice = line_of(0, MOST - 1);
     TEST("denser rays near the epipole");
     smooth(depth);
-    tyni_sample_breaks(breaks, depth, 0, MOST - 1, 0.06f);
+    tyni_sample_breaks(breaks, TYN_ISA_SCALAR, depth, 0, MOST - 1, 0.06f);
     slice.epipole = 130;
     tyni_sample_rays(rays, breaks, &slice, 16);
     for (int j = 0; j < MOST; j++) {
@@ -152,7 +152,7 @@ static void test_interpolate(void)
             rays[j >> 5] |= (uint32_t)ray << (j & 31);
             kept[j] = value[j] = ray ? test_random_float(0, 1) : NAN;
         }
-        tyni_sample_interpolate(value, rays, 0, last);
+        tyni_sample_interpolate(value, TYN_ISA_SCALAR, rays, 0, last);
         for (int j = 0, a = 0; j <= last; j++) {
             int b = tyni_sample_next(rays, j, last);
             float f = b > a ? (float)(j - a) / (float)(b - a) : 0;

@@ -1,0 +1,66 @@
+/* row_kernel.h - a template: thresholds of a row, for row.c. */
+
+/* tyni_texels_z of what is stored */
+TYNI_V_INLINE v_float TYNI_V(row_depth)(const tyni_texels *t, v_float stored)
+{
+    const v_float z = (stored - t->end) * t->step, zero = v_set(0.0f);
+    if (t->inverse)
+        return v_select(v_mand(v_gt(z, zero), v_lt(z, v_set(t->limit))), 1.0f / v_max(z, v_set(1e-6f)), zero);
+    return v_select(v_gt(z, zero), v_min(z, v_set(1.0f)), zero);
+}
+
+TYNI_V_INLINE v_float TYNI_V(row_texels)(const tyni_texels *t, v_int offset)
+{
+    if (t->bytes == 2) {
+        int32_t offsets[v_n];
+        float out[v_n];
+        v_istore(offsets, offset);
+        load16(t, t->pixels, offsets, v_n, out);
+        return TYNI_V(row_depth)(t, v_load(out));
+    }
+    return TYNI_V(row_depth)(t, v_from_bits(v_igather(t->pixels, offset)));
+}
+
+/* The threshold of a surface at column coordinate g and map depth z: 0 is dark even at the lit end, 65535 is lit to the dark
+ * end, as it is where there is nothing (z = 0). */
+TYNI_V_INLINE v_int TYNI_V(row_column)(const ends *e, v_float g, v_float z)
+{
+    const v_float f0 = e->g[0] * g + e->z[0] * z + e->c[0], f1 = e->g[1] * g + e->z[1] * z + e->c[1], zero = v_set(0.0f);
+    const v_mask dark = v_le(f0, zero), lit = v_gt(f1, zero), some = v_gt(z, zero);
+    v_float part = f0 / (f0 - f1);
+    part = v_clamp(65534.0f * part + 0.9999f, zero, v_set(65535.0f));
+    part = v_select(lit, v_set(65535.0f), part);
+    part = v_select(dark, zero, part);
+    return v_trunc(v_select(some, part, v_set(65535.0f)));
+}
+
+static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const course *c, const ends *e, int32_t first, int32_t steps,
+                                           uint16_t *threshold, float *split)
+{
+    const int32_t pitch = (int32_t)t->pitch, way = c->sign > 0.0f ? 1 : -1;
+    const int32_t along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
+    const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
+    const uint16_t one = 1;
+    uint8_t low_first;
+    memcpy(&low_first, &one, 1);
+    for (int32_t k = 0; k < steps; k += v_n) {
+        /* lanes behind the last step do it again */
+        const v_int step = v_imin(v_iadd(v_iset(k), v_index()), v_iset(steps - 1));
+        const v_float at = v_to_float(step), from = c->minor + c->slope * at, to = c->minor + c->slope * (at + 1.0f);
+        const v_int a = v_imin(v_imax(v_floori(from), none), most), b = v_imin(v_imax(v_floori(to), none), most);
+        const v_int base = v_imul(v_iadd(v_iset(first), v_imul(step, v_iset(way))), v_iset(along));
+        const v_mask same = v_ieq(a, b);
+        v_int ta, tb;
+        v_float cut = v_set(1.0f);
+        if (!v_all(same)) /* |slope| <= 1: they are neighbours */
+            cut = v_select(same, cut, v_clamp((v_to_float(v_imax(a, b)) - from) / c->slope, v_set(0.0f), v_set(1.0f)));
+        ta = TYNI_V(row_column)(e, at + 0.5f * cut, TYNI_V(row_texels)(t, v_iadd(base, v_imul(a, v_iset(aside)))));
+        tb = ta;
+        if (!v_all(same))
+            tb = v_iselect(
+                same, ta,
+                TYNI_V(row_column)(e, at + 0.5f + 0.5f * cut, TYNI_V(row_texels)(t, v_iadd(base, v_imul(b, v_iset(aside))))));
+        v_store_n(split + k, cut, steps - k);
+        v_istore_n(threshold + 2 * k, low_first ? v_ior(ta, v_shl(tb, 16)) : v_ior(tb, v_shl(ta, 16)), steps - k);
+    }
+}
