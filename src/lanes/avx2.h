@@ -188,11 +188,14 @@ TYNI_AVX2_OP void tyni_avx2_istore_where(void *p, __m256i m, __m256i x)
 }
 TYNI_AVX2_OP __m256i tyni_avx2_iload_n(const void *p, int32_t n)
 {
-    return _mm256_maskload_epi32((const int *)p, tyni_avx2_first(n));
+    return n >= 8 ? tyni_avx2_iload(p) : _mm256_maskload_epi32((const int *)p, tyni_avx2_first(n));
 }
 TYNI_AVX2_OP void tyni_avx2_istore_n(void *p, __m256i x, int32_t n)
 {
-    _mm256_maskstore_epi32((int *)p, tyni_avx2_first(n), x);
+    if (n >= 8)
+        tyni_avx2_istore(p, x);
+    else
+        _mm256_maskstore_epi32((int *)p, tyni_avx2_first(n), x);
 }
 TYNI_AVX2_OP __m256 tyni_avx2_load_n(const float *p, int32_t n)
 {
