@@ -183,6 +183,7 @@ TYNI_AVX512_OP void tyni_avx512_store_n(float *p, __m512 x, int32_t n)
 {
     _mm512_mask_storeu_ps(p, tyni_avx512_first(n), x);
 }
+/* Not a masked store: a load that follows it at once would wait for memory. */
 TYNI_AVX512_OP void tyni_avx512_store_where(float *p, __mmask16 m, __m512 x)
 {
     _mm512_storeu_ps(p, _mm512_mask_blend_ps(m, _mm512_loadu_ps(p), x));
