@@ -468,7 +468,7 @@ typedef struct tyn_context tyn_context;
 
 /* Places a context in the caller's block and gives its address (it starts there). The block belongs to the context until you
  * use it for something else; there is nothing to free. The config is copied. No render call keeps anything in it that the next
- * one reads. TYN_E_NULL, TYN_E_CONFIG, TYN_E_MEMORY, TYN_E_ALIGN. */
+ * one reads. TYN_E_NULL, TYN_E_CONFIG, TYN_E_MEMORY, TYN_E_ALIGN, TYN_E_ISA. */
 tyn_status tyn_init(tyn_context **context, const tyn_config *config, void *memory, size_t bytes);
 
 /* What happened in a frame. Sums over lights and workers; deterministic but for the times. */

@@ -374,11 +374,25 @@ static void test_ranges(void)
     CHECK(tyn_init(&context, &good, NULL, need) == TYN_E_NULL);
     CHECK(tyn_init(&context, &good, block, need - 1) == TYN_E_MEMORY);
     CHECK(tyn_init(&context, &good, block, 0) == TYN_E_MEMORY);
+    good.isa = 63 & ~tyn_isa_available();
+    CHECK(tyn_init(&context, &good, block, need) == TYN_E_ISA);
+    good.isa = 64;
+    CHECK(tyn_init(&context, &good, block, need) == TYN_E_CONFIG);
+    good.isa = -1;
+    CHECK(tyn_measure(&good, &need) == TYN_E_CONFIG);
+    good.isa = 0;
     CHECK(tyn_init(&context, &good, block + 32, need) == TYN_E_ALIGN);
     CHECK(tyn_init(&context, &good, block + 1, need) == TYN_E_ALIGN);
     CHECK(context == NULL);
     for (size_t i = 0; i < need + TYN_ALIGNMENT; i++)
         CHECK(block[i] == 0x5a);
+    for (int32_t isa = 1; isa <= TYN_ISA_WASM; isa *= 2) { /* one of those that are allowed is enough */
+        good.isa = isa;
+        CHECK(tyn_init(&context, &good, block, need) == (tyn_isa_available() & isa ? TYN_OK : TYN_E_ISA));
+        good.isa = isa | TYN_ISA_SCALAR;
+        CHECK(tyn_init(&context, &good, block, need) == TYN_OK);
+    }
+    good.isa = 0;
     CHECK(tyn_init(&context, &good, block, need) == TYN_OK && (void *)context == (void *)block);
     for (size_t i = need; i < need + TYN_ALIGNMENT; i++)
         CHECK(block[i] == 0x5a);

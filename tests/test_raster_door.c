@@ -41,6 +41,12 @@ static void test_memory(void)
     if (block) {
         uint8_t *at = block + (64 - (uintptr_t)block % 64) % 64;
         CHECK(tyn_raster_init(&raster, &c, at, zeros - 1) == TYN_E_MEMORY && !raster);
+        c.isa = TYN_ISA_SCALAR | TYN_ISA_SSE2 | TYN_ISA_AVX2 | TYN_ISA_AVX512 | TYN_ISA_NEON | TYN_ISA_WASM;
+        c.isa &= ~tyn_isa_available();
+        CHECK(tyn_raster_init(&raster, &c, at, zeros) == TYN_E_ISA && !raster);
+        c.isa = 64;
+        CHECK(tyn_raster_init(&raster, &c, at, zeros) == TYN_E_CONFIG && !raster);
+        c.isa = 0;
         CHECK(tyn_raster_init(&raster, &c, at + 4, zeros) == TYN_E_ALIGN && !raster);
         CHECK(tyn_raster_init(NULL, &c, at, zeros) == TYN_E_NULL && tyn_raster_init(&raster, NULL, at, zeros) == TYN_E_NULL &&
               tyn_raster_init(&raster, &c, NULL, zeros) == TYN_E_NULL && !raster);

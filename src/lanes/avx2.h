@@ -184,15 +184,18 @@ TYNI_AVX2_OP void tyni_avx2_istore(void *p, __m256i x)
 }
 TYNI_AVX2_OP void tyni_avx2_istore_where(void *p, __m256i m, __m256i x)
 {
-    _mm256_maskstore_epi32((int *)p, m, x);
+    tyni_avx2_istore(p, tyni_avx2_iselect(m, x, tyni_avx2_iload(p)));
 }
 TYNI_AVX2_OP __m256i tyni_avx2_iload_n(const void *p, int32_t n)
 {
-    return _mm256_maskload_epi32((const int *)p, tyni_avx2_first(n));
+    return n >= 8 ? tyni_avx2_iload(p) : _mm256_maskload_epi32((const int *)p, tyni_avx2_first(n));
 }
 TYNI_AVX2_OP void tyni_avx2_istore_n(void *p, __m256i x, int32_t n)
 {
-    _mm256_maskstore_epi32((int *)p, tyni_avx2_first(n), x);
+    if (n >= 8)
+        tyni_avx2_istore(p, x);
+    else
+        _mm256_maskstore_epi32((int *)p, tyni_avx2_first(n), x);
 }
 TYNI_AVX2_OP __m256 tyni_avx2_load_n(const float *p, int32_t n)
 {
@@ -204,7 +207,7 @@ TYNI_AVX2_OP void tyni_avx2_store_n(float *p, __m256 x, int32_t n)
 }
 TYNI_AVX2_OP void tyni_avx2_store_where(float *p, __m256i m, __m256 x)
 {
-    _mm256_maskstore_ps(p, m, x);
+    _mm256_storeu_ps(p, tyni_avx2_select(m, x, _mm256_loadu_ps(p))); /* masked stores are slow on some */
 }
 TYNI_AVX2_OP __m256i tyni_avx2_load_u8(const uint8_t *p)
 {

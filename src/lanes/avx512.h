@@ -183,9 +183,10 @@ TYNI_AVX512_OP void tyni_avx512_store_n(float *p, __m512 x, int32_t n)
 {
     _mm512_mask_storeu_ps(p, tyni_avx512_first(n), x);
 }
+/* Not a masked store: a load that follows it at once would wait for memory. */
 TYNI_AVX512_OP void tyni_avx512_store_where(float *p, __mmask16 m, __m512 x)
 {
-    _mm512_mask_storeu_ps(p, m, x);
+    _mm512_storeu_ps(p, _mm512_mask_blend_ps(m, _mm512_loadu_ps(p), x));
 }
 TYNI_AVX512_OP __m512i tyni_avx512_iload(const void *p)
 {
@@ -197,7 +198,7 @@ TYNI_AVX512_OP void tyni_avx512_istore(void *p, __m512i x)
 }
 TYNI_AVX512_OP void tyni_avx512_istore_where(void *p, __mmask16 m, __m512i x)
 {
-    _mm512_mask_storeu_epi32(p, m, x);
+    _mm512_storeu_si512(p, _mm512_mask_blend_epi32(m, _mm512_loadu_si512(p), x));
 }
 TYNI_AVX512_OP __m512i tyni_avx512_iload_n(const void *p, int32_t n)
 {

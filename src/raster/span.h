@@ -37,7 +37,7 @@ TYNI_V_INLINE v_int TYNI_V(raster_span)(const span *s, tyni_raster_kind kind, v_
             continue;
         passed = v_iadd(passed, v_iselect(m, v_iset(1), v_iset(0)));
         if (room >= v_n)
-            v_store_where(s->depth + x, m, z);
+            v_store(s->depth + x, v_select(m, z, old)); /* whole: the next span may want to load it at once */
         else
             v_store_n(s->depth + x, v_select(m, z, old), room);
         if (kind == TYNI_RASTER_SEEN)
@@ -60,6 +60,9 @@ static TYNI_V_TARGET int TYNI_V(raster_fill_rows)(brush *b, edge *left, edge *ri
         if (s.from < s.to) {
             covered = 1;
             begin_row(b, &s, y);
+            for (int32_t i = 1; i <= 2; i++) /* the caches do not guess where a triangle goes on; below the image is no harm */
+                TYNI_PREFETCH((const void *)((uintptr_t)(s.depth + s.from) +
+                                             (uintptr_t)(i * (pass->depth_stride + 4 * (ptrdiff_t)left->step))));
             if (pass->kind == TYNI_RASTER_SHADOW)
                 passed = TYNI_V(raster_span)(&s, TYNI_RASTER_SHADOW, passed);
             else if (pass->kind == TYNI_RASTER_SEEN)
