@@ -435,8 +435,9 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
     TYN_MEMORY_FULL(width, height, slices, samples, shadow_size, lights, workers, 1, 0)
 #define TYN_MEMORY_FULL(width, height, slices, samples, shadow_size, lights, workers, maps, textured)                          \
     (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) +                                \
-     ((textured) ? TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 2) : 0) + TYNI_BYTES(slices, 12) +        \
-     ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
+     ((textured) ? TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 2) : 0) +                                 \
+     3 * TYNI_BYTES((size_t)(slices) + 16, 4) + ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) +              \
+     TYNI_BYTES(workers, 64) +                                                                                                 \
      (size_t)(workers) * (TYN_ROW_BYTES + TYN_BUNDLE_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) + \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           11 * TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4) +                                 \
@@ -451,7 +452,8 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
       TYNI_BYTES(TYNI_SAMPLES(width, height, samples) + 1, 4) + TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 2)))
 #define TYN_MEMORY_BORDER(slices) (TYNI_BYTES(slices, 16) + TYNI_BYTES(slices, 4))
 #define TYN_MEMORY_DOWNSCALE(width, height, factor, textured)                                                                  \
-    (TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 4) + TYNI_BYTES(TYNI_POINTS(height, factor), 12) +   \
+    (TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 4) +                                                 \
+     3 * TYNI_BYTES(TYNI_POINTS(height, factor) + 16, 4) +                                                                     \
      ((textured) ? TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 2) : 0))
 #define TYNI_POINTS(pixels, factor) (((size_t)(pixels)-1 + (size_t)(factor)-1) / (size_t)(factor) + 1)
 #define TYN_CONTEXT_BYTES 2560

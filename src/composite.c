@@ -67,6 +67,10 @@ static const uint8_t bayer[64] = {
     3, 35, 11, 43, 1, 33, 9,  41, 51, 19, 59, 27, 49, 17, 57, 25, 15, 47, 7, 39, 13, 45, 5, 37, 63, 31, 55, 23, 61, 29, 53, 21,
 };
 
+/* 1.055 * 2^(5 / 12 e), e = -9 .. 0: what the exponent of a float adds to its sRGB encoding, 1.055 x^(1 / 2.4) - 0.055. */
+static const float octave[16] = {0.0784133449f, 0.104669258f, 0.1397167f,   0.186499417f, 0.248946846f,
+                                 0.33230418f,   0.443572849f, 0.592098713f, 0.790356994f, 1.05499995f};
+
 /* A row of the matrix, twice and a half: 16 pixels can be read from any of its first eight. */
 static void dither_row(const tyn_display *display, int32_t y, float row[24])
 {

@@ -82,7 +82,7 @@ static void paint_texture(const tyni_pass *p, int32_t x, int32_t y, float rgb[3]
         else if (mark != MARK_NONE)
             paint(rgb, 5.0f, 5.0f, 5.0f);
     } else if (tyni_entry_code(entry)) {
-        float low = tyni_entry_low(entry, p->lines.scales[line]), high = tyni_entry_high(entry, p->lines.scales[line]);
+        float low = tyni_entry_low(entry, p->lines.scales[0][line]), high = tyni_entry_high(entry, p->lines.scales[1][line]);
         paint(rgb, low, 0.5f * (low + high), high);
     }
 }

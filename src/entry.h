@@ -46,16 +46,16 @@ static inline float tyni_entry_third_value(uint16_t third, float scale)
     return q * q * scale;
 }
 
-static inline float tyni_entry_low(uint32_t entry, const float scale[2])
+static inline float tyni_entry_low(uint32_t entry, float scale)
 {
     float q = (float)(entry & 1023u) * (1.0f / 1023.0f);
-    return q * q * scale[0];
+    return q * q * scale;
 }
 
-static inline float tyni_entry_high(uint32_t entry, const float scale[2])
+static inline float tyni_entry_high(uint32_t entry, float scale)
 {
     float q = (float)(entry >> 10 & 1023u) * (1.0f / 1023.0f);
-    return q * q * scale[1];
+    return q * q * scale;
 }
 
 #endif

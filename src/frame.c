@@ -170,7 +170,8 @@ static void place_field(tyni_field *field, tyni_arena *arena, size_t lines, size
     field->pitch = (int32_t)pitch;
     field->entries = tyni_arena_take(arena, lines * pitch, sizeof *field->entries);
     field->thirds = textured ? tyni_arena_take(arena, lines * pitch, sizeof *field->thirds) : NULL;
-    field->scales = tyni_arena_take(arena, lines, sizeof *field->scales);
+    for (int32_t i = 0; i < 3; i++)
+        field->scales[i] = tyni_arena_take(arena, lines + 16, sizeof *field->scales[i]); /* a vector from any line on */
 }
 
 void tyni_frame_place(tyn_context *c, tyni_arena *arena)

@@ -26,11 +26,11 @@ static void add(sum *s, const tyni_field *field, int32_t line, int32_t sample, f
 {
     uint32_t entry = field->entries[(ptrdiff_t)line * field->pitch + sample];
     s->weight += weight;
-    s->low += weight * tyni_entry_low(entry, field->scales[line]);
-    s->high += weight * tyni_entry_high(entry, field->scales[line]);
+    s->low += weight * tyni_entry_low(entry, field->scales[0][line]);
+    s->high += weight * tyni_entry_high(entry, field->scales[1][line]);
     if (field->thirds)
         s->third +=
-            weight * tyni_entry_third_value(field->thirds[(ptrdiff_t)line * field->pitch + sample], field->scales[line][2]);
+            weight * tyni_entry_third_value(field->thirds[(ptrdiff_t)line * field->pitch + sample], field->scales[2][line]);
 }
 
 static void tap(sum *s, const tyni_field *field, int32_t line, int32_t sample, float depth, float weight)

@@ -17,7 +17,7 @@
 typedef struct tyni_field {
     uint32_t *entries; /* entry.h; line after line, `pitch` apart */
     uint16_t *thirds;  /* the third channel; NULL: none */
-    float (*scales)[3];
+    float *scales[3];  /* of each line, by channel */
     int32_t pitch;
     float threshold; /* of relative depth */
 } tyni_field;

@@ -143,11 +143,12 @@ void tyni_pass_store(const tyni_pass *p, const tyni_field *field, int32_t line, 
                      const tyni_scratch *s)
 {
     uint32_t *entries = field->entries + (ptrdiff_t)line * field->pitch;
-    float *scale = field->scales[line], inverse[3];
+    float inverse[3];
     int32_t count = tyni_maxi(p->count, 2), isa = p->context->config.isa;
     for (int32_t n = 0; n < count; n++) {
-        TYNI_LANES_CALL(isa, pass_largest, (s->value[n], first, last, &scale[n]));
-        inverse[n] = scale[n] > 1e-30f ? 1.0f / scale[n] : 0.0f;
+        float *scale = &field->scales[n][line];
+        TYNI_LANES_CALL(isa, pass_largest, (s->value[n], first, last, scale));
+        inverse[n] = *scale > 1e-30f ? 1.0f / *scale : 0.0f;
     }
     TYNI_LANES_CALL(isa, pass_pack, (entries, s, first, last, inverse, 1.0f / p->view.far_depth));
     for (int32_t j = first; j <= last && count == 3; j++)

@@ -66,6 +66,11 @@ static int32_t side_begin(const tyni_slices *g, int32_t x, int32_t end, float dy
     return x;
 }
 
+/* How many pixels away one that fits no sample looks for its surface, in the light of an unbounded sun: a lamp's varies too
+ * fast, and ends at its cone. Leaves have most such pixels: of 9951 with rays of their own in a picture of 1920x1080, 832 are
+ * left, at a loss of 0.1 dB to the march. */
+#define BESIDE 4
+
 #define TYNI_KERNEL "pixel_kernel.h"
 #include "lanes/each.h"
 
@@ -279,11 +284,13 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
     }
     r.rejected = s.fresh;
     r.stats = s.stats;
-    for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++)
-        for (r.x = 0; r.x < p->view.width; r.x += r.count) {
+    /* a run in all rows before the next run: rows below one another read the same lines of memory */
+    for (r.x = 0; r.x < p->view.width; r.x += r.count) {
+        r.count = tyni_mini(most, p->view.width - r.x);
+        for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++) {
             float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r.y * p->view.width + r.x) * 3 : NULL;
-            r.count = tyni_mini(most, p->view.width - r.x);
             r.depth = tyni_door_row(&p->depth, r.x, r.y, r.count, s.depth);
             draw_run(p, &r, &s.plane[9], sum);
         }
+    }
 }

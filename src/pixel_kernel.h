@@ -32,12 +32,39 @@ typedef struct TYNI_V(pixel_sum) {
     v_float low, high, weight;
 } TYNI_V(pixel_sum);
 
-/* A sample of each pixel's line: tap() of gather.c. `at`: the pixel's depth, not below the nearest that is told apart. */
-TYNI_V_INLINE void TYNI_V(pixel_tap)(TYNI_V(pixel_sum) * s, const tyni_field *f, v_int line, v_int sample, v_float at,
-                                     v_float weight)
+/* The two lines beside each pixel, line and line + 1, and their scales. */
+typedef struct TYNI_V(pixel_lines) {
+    v_int line;
+    v_float scale[2][2]; /* of the line, and low or high */
+} TYNI_V(pixel_lines);
+
+/* Lines rise or fall along the row, so that mostly a vector of scales, from the lower of the outer lanes on, holds all. */
+TYNI_V_INLINE void TYNI_V(pixel_scales)(TYNI_V(pixel_lines) * l, const tyni_field *f, v_int line)
 {
-    const v_int entry = v_igather(f->entries, v_shl(v_iadd(v_imul(line, v_iset(f->pitch)), sample), 2));
-    const v_int code = v_shr(entry, 20), ten = v_iset(1023), three = v_imul(line, v_iset(3));
+    int32_t all[v_n], low, near;
+    v_int place;
+    v_istore(all, line);
+    low = tyni_mini(all[0], all[v_n - 1]);
+    place = v_isub(line, v_iset(low));
+    near = v_none(v_mor(v_ilt(place, v_iset(0)), v_igt(place, v_iset(v_n - 1))));
+    l->line = line;
+    for (int32_t k = 0; k < 2; k++)
+        for (int32_t side = 0; side < 2; side++) {
+            if (near)
+                l->scale[side][k] = v_pick(f->scales[k] + low + side, place);
+            else
+                l->scale[side][k] = v_gather(f->scales[k] + side, line);
+        }
+}
+
+/* A sample of each pixel's line, or of the one beside it: tap() of gather.c. `at`: the pixel's depth, not below the nearest
+ * that is told apart. */
+TYNI_V_INLINE void TYNI_V(pixel_tap)(TYNI_V(pixel_sum) * s, const tyni_field *f, const TYNI_V(pixel_lines) * l, int32_t side,
+                                     v_int sample, v_float at, v_float weight)
+{
+    const uint32_t *entries = f->entries + (ptrdiff_t)side * f->pitch;
+    const v_int entry = v_igather(entries, v_shl(v_iadd(v_imul(l->line, v_iset(f->pitch)), sample), 2));
+    const v_int code = v_shr(entry, 20), ten = v_iset(1023);
     const v_float other = v_from_bits(v_iadd(v_shl(v_isub(code, v_iset(1)), 15), v_iset((int32_t)TYNI_ENTRY_FLOOR + 0x4000)));
     const v_float off = v_abs(at - other), limit = f->threshold * v_min(at, other);
     const v_float low = v_to_float(v_iand(entry, ten)) * (1.0f / 1023.0f);
@@ -47,8 +74,8 @@ TYNI_V_INLINE void TYNI_V(pixel_tap)(TYNI_V(pixel_sum) * s, const tyni_field *f,
     ratio = v_select(v_le(off, limit), v_set(1.0f), ratio * ratio);
     weight = v_select(v_ieq(code, v_iset(0)), v_set(0.0f), weight * ratio);
     s->weight = s->weight + weight;
-    s->low = s->low + weight * (low * low * v_gather(f->scales[0], three));
-    s->high = s->high + weight * (high * high * v_gather(f->scales[0] + 1, three));
+    s->low = s->low + weight * (low * low * l->scale[side][0]);
+    s->high = s->high + weight * (high * high * l->scale[side][1]);
 }
 
 /* Pixels first .. end - 1 of the run, all in one sector of the shear grid. */
@@ -59,6 +86,8 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
     const float py = (float)r->y + 0.5f, dy = py * g->ew - g->ey, inverse = 1.0f / sector->spacing;
     const float slant = (sector->border - py) / dy;
     const int32_t last = sector->count - 2, most = p->lines.pitch - 1;
+    const int sun = p->lamp->kind == TYN_LIGHT_DIRECTIONAL && !tyni_view_bounded(p->lamp);
+    const int32_t beside = sun ? BESIDE / g->stride : 0;
     int32_t shift = 0;
     if (sector->count < 2)
         return; /* no slices at all */
@@ -70,6 +99,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
         const v_float px = v_to_float(x) + 0.5f, dx = px * g->ew - g->ex, to = v_load_n(r->to + i, n);
         v_float at = to / (v_load_n(r->length + i, n) * p->view.far_depth), k, f, along;
         v_int line, sample, part;
+        TYNI_V(pixel_lines) l;
         TYNI_V(pixel_sum) s = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
         v_mask wanted = v_mand(v_first(n), v_gt(to, v_set(0.0f))), fits;
         if (v_none(wanted))
@@ -82,21 +112,35 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
         k = v_clamp((k - sector->first) * inverse, v_set(0.0f), v_set((float)(sector->count - 1)));
         line = v_imin(v_trunc(k), v_iset(last));
         f = k - v_to_float(line);
-        line = v_iadd(line, v_iset(sector->start));
+        TYNI_V(pixel_scales)(&l, &p->lines, v_iadd(line, v_iset(sector->start)));
         part = sector->along_y ? v_iset(r->y) : v_imin(x, v_iset(g->width - 1));
         sample = v_shr(part, shift);
         if (!shift) {
-            TYNI_V(pixel_tap)(&s, &p->lines, line, sample, at, 1.0f - f);
-            TYNI_V(pixel_tap)(&s, &p->lines, v_iadd(line, v_iset(1)), sample, at, f);
+            TYNI_V(pixel_tap)(&s, &p->lines, &l, 0, sample, at, 1.0f - f);
+            TYNI_V(pixel_tap)(&s, &p->lines, &l, 1, sample, at, f);
         } else {
-            const v_int next = v_imin(v_iadd(sample, v_iset(1)), v_iset(most)), beside = v_iadd(line, v_iset(1));
+            const v_int next = v_imin(v_iadd(sample, v_iset(1)), v_iset(most));
             along = v_to_float(v_iand(part, v_iset(g->stride - 1))) * (1.0f / (float)g->stride);
-            TYNI_V(pixel_tap)(&s, &p->lines, line, sample, at, (1.0f - f) * (1.0f - along));
-            TYNI_V(pixel_tap)(&s, &p->lines, beside, sample, at, f * (1.0f - along));
-            TYNI_V(pixel_tap)(&s, &p->lines, line, next, at, (1.0f - f) * along);
-            TYNI_V(pixel_tap)(&s, &p->lines, beside, next, at, f * along);
+            TYNI_V(pixel_tap)(&s, &p->lines, &l, 0, sample, at, (1.0f - f) * (1.0f - along));
+            TYNI_V(pixel_tap)(&s, &p->lines, &l, 1, sample, at, f * (1.0f - along));
+            TYNI_V(pixel_tap)(&s, &p->lines, &l, 0, next, at, (1.0f - f) * along);
+            TYNI_V(pixel_tap)(&s, &p->lines, &l, 1, next, at, f * along);
         }
         fits = v_mand(wanted, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
+        /* where neither line has the pixel's surface at its place, it may have it next door, as ED10's taps look for it */
+        for (int32_t away = 1; away <= beside && v_any(v_mandnot(wanted, fits)); away++) {
+            TYNI_V(pixel_sum) more = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
+            const v_mask lost = v_mandnot(wanted, fits);
+            for (int32_t way = -away; way <= away; way += 2 * away) {
+                const v_int next = v_imin(v_imax(v_iadd(sample, v_iset(way)), v_iset(0)), v_iset(most));
+                TYNI_V(pixel_tap)(&more, &p->lines, &l, 0, next, at, 1.0f - f);
+                TYNI_V(pixel_tap)(&more, &p->lines, &l, 1, next, at, f);
+            }
+            s.weight = v_select(lost, more.weight, s.weight);
+            s.low = v_select(lost, more.low, s.low);
+            s.high = v_select(lost, more.high, s.high);
+            fits = v_mand(wanted, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
+        }
         v_store_n(r->value[0] + i, v_select(fits, s.low / s.weight, v_set(0.0f)), n);
         v_store_n(r->value[1] + i, v_select(fits, s.high / s.weight, v_set(0.0f)), n);
         for (uint32_t bits = v_word(v_mandnot(wanted, fits)); bits; bits &= bits - 1) {

@@ -216,35 +216,31 @@ void tyni_ray_bundle(tyni_bundle *b, int32_t isa, const tyni_slice *slice, const
     b->edges = 0;
 }
 
-/* The integrals of the edges that wait, and their sums in order. */
+/* The integrals of the edges that wait, and their sums, ray by ray in order. */
 static void settle(tyni_bundle *b, int32_t isa, const float sigma[2], int32_t channels)
 {
     TYNI_LANES_CALL(isa, ray_integrals, (b, sigma, channels));
-    for (int32_t k = 0; k < channels; k++)
-        for (int32_t i = 0; i < b->edges; i++) {
-            float *sum = &b->sum[k][b->ray[i]];
-            *sum = b->on[i] ? *sum - b->value[k][i] : *sum + b->value[k][i];
+    for (int32_t i = 0; i < b->edges;) {
+        int32_t n = b->ray[i], on = b->on[i];
+        float sum[2];
+        sum[0] = b->sum[0][n];
+        sum[1] = b->sum[1][n];
+        for (; i < b->edges && b->ray[i] == n; i++, on = !on) {
+            sum[0] = on ? sum[0] - b->value[0][i] : sum[0] + b->value[0][i];
+            if (channels > 1)
+                sum[1] = on ? sum[1] - b->value[1][i] : sum[1] + b->value[1][i];
         }
-    b->edges = 0;
-}
-
-/* Edges of ray n; `on`: it goes to what differs from outside at the first of them. */
-static void wait(tyni_bundle *b, int32_t n, const float *at, int32_t count, int on)
-{
-    for (int32_t k = 0; k < count; k++, on = !on) {
-        int32_t i = b->edges + k;
-        b->t[i] = tyni_clampf(edge_t(at[k], b->rc[n], b->rd[n], b->wc[n], b->wd[n]), 0.0f, b->to[n]);
-        b->ray[i] = (uint8_t)n;
-        b->on[i] = (uint8_t)on;
+        b->sum[0][n] = sum[0];
+        b->sum[1][n] = sum[1];
     }
-    b->edges += count;
+    b->edges = 0;
 }
 
 static int32_t cross(tyni_bundle *b, int32_t n, const tyni_finder *finder, const tyni_piece *piece, int outside,
                      const float sigma[2], int32_t channels)
 {
     uint32_t position = tyni_row_position(finder->row, b->p[n]);
-    float at[EDGES + 1];
+    float at[EDGES + 16]; /* whole vectors */
     int on = 0;
     crossing c;
     crossing_begin(&c, piece, b->from[n], b->until[n], position, outside);
@@ -254,8 +250,12 @@ static int32_t cross(tyni_bundle *b, int32_t n, const tyni_finder *finder, const
             at[count++] = end_of(&c);
         if (b->edges + count > TYNI_RAY_EDGES)
             settle(b, finder->isa, sigma, channels);
-        wait(b, n, at, count, !on);
-        on ^= count & 1;
+        TYNI_LANES_CALL(finder->isa, ray_places, (b, n, at, count));
+        for (int32_t k = 0; k < count; k++, on = !on) {
+            b->ray[b->edges + k] = (uint8_t)n;
+            b->on[b->edges + k] = (uint8_t)!on;
+        }
+        b->edges += count;
     }
     return c.looked;
 }

@@ -85,6 +85,17 @@ static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_piece *pi
     }
 }
 
+/* Where on ray n the edges are, behind those that wait. */
+static TYNI_V_TARGET void TYNI_V(ray_places)(tyni_bundle *b, int32_t n, const float *at, int32_t count)
+{
+    const float rc = b->rc[n], rd = b->rd[n], wc = b->wc[n], wd = b->wd[n];
+    const v_float end = v_set(b->to[n]);
+    for (int32_t i = 0; i < count; i += v_n) {
+        const v_float a = v_load_n(at + i, count - i);
+        v_store_n(b->t + b->edges + i, v_clamp((a * wc - rc) / (rd - a * wd), v_set(0.0f), end), count - i);
+    }
+}
+
 static TYNI_V_TARGET void TYNI_V(ray_integrals)(tyni_bundle *b, const float sigma[2], int32_t channels)
 {
     for (int32_t i = 0; i < b->edges; i += v_n) {

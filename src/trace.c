@@ -38,16 +38,20 @@ static int32_t clamp_to_volume(const tyni_pass *p, const tyni_slice *slice, floa
     return inside;
 }
 
-/* How far from the axis origin - light the rays of a line get. */
+/* How far from the axis origin - light the rays of a line get: a ray's end is its depth times the point of the pixel plane
+ * (perspective) or beyond it (orthographic), and both are linear along the line. A hair more, since rays end elsewhere in
+ * floats. */
 static float reach_of(const tyni_pass *p, const tyni_slice *slice, const float *depth)
 {
-    float reach = 0.0f;
+    const int flat = p->view.orthographic;
+    float a = tyni_vec_dot(slice->a, slice->ex), b = tyni_vec_dot(slice->b, slice->ex), reach = 0.0f;
+    float ahead = flat ? tyni_vec_dot(p->view.forward, slice->ex) : 0.0f;
     for (int32_t j = slice->first; j <= slice->last; j++) {
-        tyni_sight v;
-        float t = depth[j] * tyni_slice_sight(slice, &p->view, tyni_slice_p(slice, j), &v);
-        reach = tyni_maxf(reach, tyni_vec_dot(tyni_vec_sub(tyni_sight_at(&v, t), slice->origin), slice->ex));
+        float x = a + b * tyni_slice_p(slice, j);
+        reach = tyni_maxf(reach, flat ? x + depth[j] * ahead : x * depth[j]);
     }
-    return reach;
+    reach -= tyni_vec_dot(slice->origin, slice->ex);
+    return reach + 1e-5f * tyni_absf(reach);
 }
 
 /* One ray against the row; a walk over the map where its columns are too coarse. */

@@ -235,6 +235,17 @@ TYNI_AVX2_OP __m256i tyni_avx2_igather(const void *base, __m256i bytes)
 {
     return _mm256_i32gather_epi32((const int *)base, bytes, 1);
 }
+TYNI_AVX2_OP __m256 tyni_avx2_pick(const float *base, __m256i index)
+{
+    return _mm256_permutevar8x32_ps(_mm256_loadu_ps(base), index);
+}
+/* Both halves of the table, and bit 3 of the index says which. */
+TYNI_AVX2_OP __m256 tyni_avx2_pick16(const float *base, __m256i index)
+{
+    const __m256 low = _mm256_permutevar8x32_ps(_mm256_loadu_ps(base), index);
+    const __m256 high = _mm256_permutevar8x32_ps(_mm256_loadu_ps(base + 8), index);
+    return _mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
+}
 TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 {
     return _mm256_i32gather_ps(base, index, 4);

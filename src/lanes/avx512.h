@@ -224,13 +224,38 @@ TYNI_AVX512_OP void tyni_avx512_store_u16(uint16_t *p, __m512i x)
 {
     _mm256_storeu_si256((__m256i *)(void *)p, _mm512_cvtepi32_epi16(x));
 }
+TYNI_AVX512_OP __m512 tyni_avx512_pick16(const float *base, __m512i index)
+{
+    return _mm512_permutexvar_ps(index, _mm512_loadu_ps(base));
+}
+/* Loads and inserts: the machine's own gathers take three times as long on Zen 4 and are no faster elsewhere. */
+TYNI_AVX512_OP __m128i tyni_avx512_four(const uint8_t *base, const int32_t *bytes)
+{
+    int32_t x[4];
+    memcpy(&x[0], base + bytes[0], 4);
+    memcpy(&x[1], base + bytes[1], 4);
+    memcpy(&x[2], base + bytes[2], 4);
+    memcpy(&x[3], base + bytes[3], 4);
+    return _mm_setr_epi32(x[0], x[1], x[2], x[3]);
+}
 TYNI_AVX512_OP __m512i tyni_avx512_igather(const void *base, __m512i bytes)
 {
-    return _mm512_i32gather_epi32(bytes, base, 1);
+    int32_t at[16];
+    __m256i low, high;
+    _mm512_storeu_si512(at, bytes);
+    low = _mm256_castsi128_si256(tyni_avx512_four(base, at));
+    low = _mm256_inserti128_si256(low, tyni_avx512_four(base, at + 4), 1);
+    high = _mm256_castsi128_si256(tyni_avx512_four(base, at + 8));
+    high = _mm256_inserti128_si256(high, tyni_avx512_four(base, at + 12), 1);
+    return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 TYNI_AVX512_OP __m512 tyni_avx512_gather(const float *base, __m512i index)
 {
-    return _mm512_i32gather_ps(index, base, 4);
+    return _mm512_castsi512_ps(tyni_avx512_igather(base, _mm512_slli_epi32(index, 2)));
+}
+TYNI_AVX512_OP __m512 tyni_avx512_pick(const float *base, __m512i index)
+{
+    return _mm512_permutexvar_ps(index, _mm512_loadu_ps(base));
 }
 TYNI_AVX512_OP __m512i tyni_avx512_igather_where(const void *base, __m512i bytes, __mmask16 m)
 {

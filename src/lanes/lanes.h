@@ -46,6 +46,8 @@
  *     ..._n(p, n), ..._n(p, x, n)        the first n lanes alone, any n: others load as 0, their memory is not touched
  *     v_store_where v_istore_where(p, m, x)    where m; elsewhere the old values may be written back: all must be writable
  *     v_gather(base, index)              floats base[index]; all lanes are read
+ *     v_pick(base, index)                floats base[index], 0 <= index < v_n; all of base[0 .. v_n - 1] may be read
+ *     v_pick16(base, index)              the same of a table of 16, 0 <= index < 16
  *     v_igather(base, bytes)             32-bit words at base + bytes, at any address
  *     v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything
  *     v_store_rgb(p, r, g, b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b)
@@ -150,6 +152,8 @@
 #define v_store_u8 TYNI_V(store_u8)
 #define v_store_u16 TYNI_V(store_u16)
 #define v_gather TYNI_V(gather)
+#define v_pick TYNI_V(pick)
+#define v_pick16 TYNI_V(pick16)
 #define v_igather TYNI_V(igather)
 #define v_igather_where TYNI_V(igather_where)
 #define v_store_rgb TYNI_V(store_rgb)

@@ -258,6 +258,14 @@ TYNI_NEON_OP float32x4_t tyni_neon_gather(const float *base, int32x4_t index)
         x[i] = base[at[i]];
     return vld1q_f32(x);
 }
+TYNI_NEON_OP float32x4_t tyni_neon_pick(const float *base, int32x4_t index)
+{
+    return tyni_neon_gather(base, index);
+}
+TYNI_NEON_OP float32x4_t tyni_neon_pick16(const float *base, int32x4_t index)
+{
+    return tyni_neon_gather(base, index);
+}
 TYNI_NEON_OP int32x4_t tyni_neon_igather_where(const void *base, int32x4_t bytes, uint32x4_t m)
 {
     int32_t at[4], x[4] = {0, 0, 0, 0};

@@ -232,6 +232,14 @@ TYNI_SCALAR_OP float tyni_scalar_gather(const float *base, int32_t index)
 {
     return base[index];
 }
+TYNI_SCALAR_OP float tyni_scalar_pick(const float *base, int32_t index)
+{
+    return tyni_scalar_gather(base, index);
+}
+TYNI_SCALAR_OP float tyni_scalar_pick16(const float *base, int32_t index)
+{
+    return tyni_scalar_gather(base, index);
+}
 TYNI_SCALAR_OP int32_t tyni_scalar_igather(const void *base, int32_t bytes)
 {
     return tyni_scalar_iload((const uint8_t *)base + bytes);

@@ -261,6 +261,14 @@ TYNI_SSE2_OP __m128 tyni_sse2_gather(const float *base, __m128i index)
     tyni_sse2_istore(at, index);
     return _mm_setr_ps(base[at[0]], base[at[1]], base[at[2]], base[at[3]]);
 }
+TYNI_SSE2_OP __m128 tyni_sse2_pick(const float *base, __m128i index)
+{
+    return tyni_sse2_gather(base, index);
+}
+TYNI_SSE2_OP __m128 tyni_sse2_pick16(const float *base, __m128i index)
+{
+    return tyni_sse2_gather(base, index);
+}
 TYNI_SSE2_OP __m128i tyni_sse2_igather_where(const void *base, __m128i bytes, __m128i m)
 {
     int32_t at[4], x[4] = {0, 0, 0, 0};

@@ -251,6 +251,14 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather(const float *base, v128_t index)
         x[i] = base[at[i]];
     return tyni_wasm_load(x);
 }
+TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick(const float *base, v128_t index)
+{
+    return tyni_wasm_gather(base, index);
+}
+TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick16(const float *base, v128_t index)
+{
+    return tyni_wasm_gather(base, index);
+}
 TYNI_WASM_OP v128_t tyni_wasm_igather_where(const void *base, v128_t bytes, v128_t m)
 {
     int32_t at[4], x[4] = {0, 0, 0, 0};

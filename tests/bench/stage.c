@@ -1,3 +1,4 @@
+#define _DEFAULT_SOURCE /* madvise */
 /* stage.c - see stage.h */
 #include "stage.h"
 
@@ -5,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <time.h>
 
 #include "showcase.h"
@@ -25,9 +27,13 @@ void bench_need(tyn_status status, const char *what)
 
 static void *block_of(size_t bytes)
 {
+    const size_t page = 2u << 20;
     void *block = NULL;
-    if (posix_memalign(&block, TYN_ALIGNMENT, bytes) || !block)
+    if (posix_memalign(&block, bytes < page ? TYN_ALIGNMENT : page, bytes) || !block)
         bench_die("no memory");
+#ifdef MADV_HUGEPAGE
+    madvise(block, bytes, MADV_HUGEPAGE); /* lines and maps are read across: a page for each row is more than TLBs hold */
+#endif
     memset(block, 0, bytes); /* touched: page faults are no part of the times */
     return block;
 }
