@@ -23,7 +23,7 @@ TEST_SRC := $(filter-out tests/fuzz_%.c,$(wildcard tests/*.c))
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
 C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-.PHONY: all run test check-all bench bench-raster golden install uninstall single format format-check clean help FORCE
+.PHONY: all run test check-all bench bench-raster bench-prefiltered golden install uninstall single format format-check clean help FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -45,6 +45,11 @@ bench: $(B)/bench $(B)/bench-papers
 # The rasterizer against Mesa's llvmpipe, where pkg-config finds EGL and GL.
 bench-raster: $(B)/bench-raster
 	$(B)/bench-raster
+
+# Tables on stdout, pictures in build/prefiltered.
+bench-prefiltered: $(B)/bench-prefiltered
+	@mkdir -p $(B)/prefiltered
+	$(B)/bench-prefiltered $(B)/prefiltered
 
 # Rewrites tests/golden.txt and puts the pictures where one can look at them.
 golden: $(B)/tests
@@ -80,6 +85,9 @@ $(B)/bench-papers: $(call OBJ,tests/bench/papers.c tests/bench/stage.c) $(B)/lib
 $(B)/bench-raster: tests/bench/raster.c tests/bench/llvmpipe.c tests/bench/raster.h $(B)/libport.a $(B)/libtyndall.a
 	@gl=$$(pkg-config --cflags --libs egl gl 2>/dev/null) && gl="-DBENCH_EGL $$gl"; set -x; \
 	$(CC) $(FLAGS) $(POSIX) -o $@ $(filter %.c,$^) $(filter %.a,$^) $$gl -lm
+
+$(B)/bench-prefiltered: $(call OBJ,tests/bench/prefiltered.c tests/bench/gallery.c) $(B)/libport.a $(B)/libtyndall.a
+	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
 $(B)/obj/src/%.o: src/%.c $(B)/flags
 	@mkdir -p $(@D)
@@ -137,6 +145,7 @@ help:
 	@echo 'make check-all  the tests under other compilers, optimisers and sanitizers, about a quarter of an hour'
 	@echo 'make bench      times against a plain pass over the pixels'
 	@echo 'make bench-raster  the rasterizer, every ISA, and against llvmpipe where EGL and GL are installed'
+	@echo 'make bench-prefiltered  tables and pictures of prefiltered rows'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
 	@echo 'make single     the library as two files, build/single/tyndall.[ch]'
 	@echo 'make install    to PREFIX=/usr/local, below DESTDIR; make uninstall takes it away again'

@@ -328,6 +328,22 @@ struct tyn_mesh;
 tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, const tyn_image *depth,
                                 const struct tyn_mesh *meshes, int32_t mesh_count);
 
+/* Klehm et al. 2014, section 4.2: the matrices of `count` maps, 1 .. TYN_MAX_MAPS, in which every view ray of a perspective
+ * camera stays in one row at one depth, so that a rasterizer draws what shafts are computed from with nothing to resample;
+ * for a directional light: maps[0] is its `shadow`, maps[1] .. its `more`. They cover all that the camera can see from the
+ * depth `from` (> 0; 0: the near end) up to `distance` (0: the far end), one behind the other in equal ratios: the more, the
+ * more even their texels. What is nearer is as `outside` says. Casters nearer to the light must be clamped to the near end when
+ * a map is rendered (tyn_raster_shadow does). Sizes, if set, give margins. For the medium alone: surfaces want a map without
+ * gaps. TYN_E_NULL, TYN_E_CAMERA (also orthographic, and from and distance out of order), TYN_E_LIGHT (kind, direction, sizes;
+ * and where tyn_shadow_rectifiable is 0), TYN_E_LIMIT (count). */
+tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_light *light, const tyn_camera *camera,
+                                    float from, float distance);
+
+/* Whether that can be done: the cosine of half the angle that the view takes up as the light sees it. 1: a narrow view across
+ * the light. Falls as the epipole comes nearer to the screen, and with it the worth of the maps; below 0.1, and where a view
+ * ray is parallel to the light, it is 0: none exist. 0 also for arguments that tyn_shadow_fit_rectified refuses. */
+float tyn_shadow_rectifiable(const tyn_light *light, const tyn_camera *camera);
+
 /* ---- display ------------------------------------------------------------------------------------------------------- */
 
 typedef enum tyn_tone {
@@ -352,8 +368,34 @@ typedef enum tyn_method {
     TYN_METHOD_EPIPOLAR = 0,  /* the default: rays along epipolar slices, interpolated (ED10, IVB and beyond) */
     TYN_METHOD_MARCH = 1,     /* a ray for each pixel: the truth that the others are held against */
     TYN_METHOD_SUBSAMPLE = 2, /* a ray for each point of a coarse grid, bilateral up-sampling (ED10's naive comparison) */
-    TYN_METHOD_NONE = 3       /* no scattered light; the surface is attenuated all the same */
+    TYN_METHOD_NONE = 3,      /* no scattered light; the surface is attenuated all the same */
+    /* Klehm et al. 2014: visibility along each slice as prefiltered rows of a Fourier basis, at a cost per pixel that does not
+     * depend on the scene. Approximate: some per mille of the light on the mean. See `bases` and
+     * what follows it. Of the lines and pixels' ways they know TYN_GATHER_SHEAR and no downscale (PREFILTERED), or all
+     * (HYBRID). Under orthographic cameras they are TYN_METHOD_MARCH and TYN_METHOD_EPIPOLAR. */
+    TYN_METHOD_PREFILTERED = 4, /* looked up for every pixel; the rows of all slices are kept: tyn_measure tells */
+    TYN_METHOD_HYBRID = 5       /* EPIPOLAR, with its rays looked up in the rows of the one slice in hand */
 } tyn_method;
+
+/* Of TYN_METHOD_PREFILTERED and _HYBRID: what a column of light weighs in the mean up to where a ray ends. */
+typedef enum tyn_weights {
+    TYN_WEIGHTS_TRANSMITTANCE = 0, /* as much as its light on its way to the camera, along reference rays */
+    TYN_WEIGHTS_AVERAGE = 1        /* its width: for thin air alone */
+} tyn_weights;
+
+/* The one reference ray of a slice, with config.references 1. */
+typedef enum tyn_reference {
+    TYN_REFERENCE_BISECTRIX = 0, /* between the angles to the light of the slice's outermost rays */
+    TYN_REFERENCE_GEOMETRIC = 1  /* the geometric mean of their sines: best for the worst ray; poor around an epipole */
+} tyn_reference;
+
+/* Bits of config.paper: back to Klehm et al., to see what is gained. */
+typedef enum tyn_paper {
+    TYN_PAPER_DEPTH = 1,   /* z even over the slice, not remapped by where its shadows begin */
+    TYN_PAPER_RANGE = 2,   /* z over all of the period, no margin against its wrap */
+    TYN_PAPER_COLUMNS = 4, /* columns that all rays see lit, or dark, in the basis like others */
+    TYN_PAPER_EPIPOLE = 8  /* rays near the epipole looked up like others, not walked (the paper's figure 8) */
+} tyn_paper;
 
 /* How a ray finds its lit intervals. In slices, all but the fixed steps read the slice's row of thresholds and give the same
  * bytes; where a ray has no row (march, subsample, rejected pixels) they are an exact walk over the map's texels. */
@@ -415,6 +457,15 @@ typedef struct tyn_config {
     int32_t lights;    /* most lights in a frame, 1 .. TYN_MAX_LIGHTS; 0: 1. More than 1 costs 12 bytes a pixel */
     int32_t workers;   /* most workers of an executor, 1 .. TYN_MAX_WORKERS; 0: 1. Each costs a scratch */
     int32_t isa; /* mask of tyn_isa that may be used, the best of them is; 0: any. TYN_E_ISA from tyn_init if none is there */
+    /* TYN_METHOD_PREFILTERED and _HYBRID. A slice takes columns * references * (bases + 4) bytes, three times that with
+     * `textured`, and some 200 more. */
+    int32_t bases;           /* sines and cosines together, 4 .. 128, a multiple of 4; 0: 32 */
+    int32_t columns;         /* stored ones of a slice, 4 .. 4096; 0: 128 */
+    int32_t references;      /* reference rays of a slice, 1 .. 4; 0: 3. One will do where the light is far off the screen */
+    tyn_weights weights;     /* TYN_WEIGHTS_AVERAGE has one set of rows, whatever `references` says */
+    tyn_reference reference; /* with references 1 */
+    int32_t window;          /* not 0: no ringing (Lanczos' factors), at the price of shadows twice as soft */
+    int32_t paper;           /* bits of tyn_paper; 0: none */
 } tyn_config;
 
 #define TYN_MAX_LIGHTS 16
@@ -436,8 +487,8 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_MEMORY_FULL(width, height, slices, samples, shadow_size, lights, workers, maps, textured)                          \
     (TYN_CONTEXT_BYTES + TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 4) +                                \
      ((textured) ? TYNI_BYTES((size_t)(slices)*TYNI_SAMPLES(width, height, samples), 2) : 0) +                                 \
-     3 * TYNI_BYTES((size_t)(slices) + 16, 4) + ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) +              \
-     TYNI_BYTES(workers, 64) +                                                                                                 \
+     ((slices) ? 3 * TYNI_BYTES((size_t)(slices) + 16, 4) : 0) +                                                               \
+     ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
      (size_t)(workers) * (TYN_ROW_BYTES + TYN_BUNDLE_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) + \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           11 * TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4) +                                 \
@@ -455,8 +506,19 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
     (TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 4) +                                                 \
      3 * TYNI_BYTES(TYNI_POINTS(height, factor) + 16, 4) +                                                                     \
      ((textured) ? TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 2) : 0))
+/* More, with TYN_METHOD_HYBRID; and what TYN_METHOD_PREFILTERED takes in all. sets: references (1 with average weights), three
+ * times as many with `textured`. */
+#define TYN_MEMORY_HYBRID(bases, columns, sets, workers)                                                                       \
+    ((size_t)(workers) * (TYNI_BYTES(1, TYNI_SHELF(bases, columns, sets)) + TYNI_BYTES(1, TYNI_MILL(bases, sets))))
+#define TYN_MEMORY_PREFILTERED(width, height, slices, samples, shadow_size, lights, workers, maps, bases, columns, sets)       \
+    (TYN_MEMORY_FULL(width, height, 0, samples, shadow_size, lights, workers, maps, 0) +                                       \
+     TYNI_BYTES(slices, TYNI_SHELF(bases, columns, sets)) + (size_t)(workers)*TYNI_BYTES(1, TYNI_MILL(bases, sets)))
+#define TYNI_SHELF(bases, columns, sets)                                                                                       \
+    ((TYN_SHELF_BYTES + (size_t)(columns) * (size_t)(sets) * ((size_t)(bases) + 4) + 7) / 8 * 8)
+#define TYNI_MILL(bases, sets) (4 * ((size_t)(sets) * ((size_t)(bases) + 3) + (size_t)(bases) + 520))
+#define TYN_SHELF_BYTES 192
 #define TYNI_POINTS(pixels, factor) (((size_t)(pixels)-1 + (size_t)(factor)-1) / (size_t)(factor) + 1)
-#define TYN_CONTEXT_BYTES 2560
+#define TYN_CONTEXT_BYTES 2816
 #define TYN_STATS_BYTES 256
 #define TYN_ROW_BYTES 1216
 #define TYN_BUNDLE_BYTES 3264
@@ -514,12 +576,15 @@ typedef enum tyn_debug {
     TYN_DEBUG_REJECTED = 5, /* pixels with a ray of their own: red, and yellow those of the pass after up-scaling */
     TYN_DEBUG_OUTSIDE = 6,  /* surface points outside the first light's shadow map, magenta */
     TYN_DEBUG_SOURCES =
-        7,             /* the texture of IVB figure 17: a row is a slice, a column a sample, its colour its pair of sources */
-    TYN_DEBUG_ROW = 8, /* the row of the slice at debug_x, debug_y: columns to the right, positions downwards from the light;
-                          lit yellow, dark blue; across it that sample's ray, bright where it gathers */
-    TYN_DEBUG_TREE =
-        9 /* of a context with TYN_RAYS_TREE, else TYN_E_DISPLAY: the same, and below it the levels of the tree: each node from
-             its least to its greatest threshold, those that the ray looked at bright: lit green, dark red, else white */
+        7,               /* the texture of IVB figure 17: a row is a slice, a column a sample, its colour its pair of sources */
+    TYN_DEBUG_ROW = 8,   /* the row of the slice at debug_x, debug_y: columns to the right, positions downwards from the light;
+                            lit yellow, dark blue; across it that sample's ray, bright where it gathers */
+    TYN_DEBUG_TREE = 9,  /* of a context with TYN_RAYS_TREE, else TYN_E_DISPLAY: the same, and below it the levels of the tree:
+                            each node from its least to its greatest threshold, those that the ray looked at bright: lit green,
+                            dark red, else white */
+    TYN_DEBUG_BASIS = 10 /* of a context with TYN_METHOD_PREFILTERED, else TYN_E_DISPLAY (as the views of lines and samples, 1
+                            to 4 and 7, are with it): its rows. A row is a slice, a column a stored one; red: the part of the
+                            light that no ray sees shadowed, green and blue: the first sine and cosine of the rest */
 } tyn_debug;
 
 /* What a depth image holds. All zero: view-space depth in metres. */

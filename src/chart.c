@@ -99,19 +99,44 @@ static void draw_tree(chart *c, const tyni_row *row, const tyni_tree *tree, uint
     }
 }
 
-void tyni_chart_draw(const tyni_pass *p)
+/* The ray of a sample in all pieces that it crosses. A function of its own, since its table takes stack that building a row
+ * needs. */
+static TYNI_NOINLINE void draw_rays(const tyni_pass *p, chart *c, const tyni_slice *slice, const tyni_scratch *s,
+                                    const tyni_tree *tree, int32_t sample)
 {
     static const int32_t channels[1] = {0};
-    float x = p->frame->debug_x, y = p->frame->debug_y, distance, at, length, t0, t1, from, to;
-    int32_t index, sample, first, last, height = p->frame->target.height;
-    uint32_t position;
+    int32_t first, last, height = p->frame->target.height, upper = c->height;
+    float at = tyni_slice_p(slice, sample), length, t0, t1, from, to;
+    uint32_t position = tyni_row_position(s->row, at);
+    tyni_sight v;
+    tyni_integral it;
+    length = tyni_slice_sight(slice, &p->view, at, &v);
+    if (!tyni_pass_range(p, &v, s->depth[sample] * length, &t0, &t1))
+        return;
+    tyni_integral_begin(&it, &p->medium, p->lamp, &v, t0, t1, channels, 1);
+    for (int32_t i = 0; i < s->row->count; i++) {
+        const tyni_piece *piece = &s->row->pieces[i];
+        if (!tyni_ray_columns(piece, &it, &v, &first, &last, &from, &to))
+            continue;
+        first += piece->first;
+        last += piece->first;
+        c->top = 0;
+        c->height = upper;
+        draw_ray(c, s->row, position, first, last);
+        if (p->frame->debug == TYN_DEBUG_TREE)
+            draw_tree(c, s->row, tree, position, first, last, upper, height - upper);
+    }
+}
+
+void tyni_chart_draw(const tyni_pass *p)
+{
+    float x = p->frame->debug_x, y = p->frame->debug_y, distance;
+    int32_t index, sample, height = p->frame->target.height;
     chart c = {&p->frame->target, 0, 0, 0};
     tyni_scratch s;
     tyni_slice slice;
     tyni_finder finder;
     tyni_tree tree;
-    tyni_sight v;
-    tyni_integral it;
     if (x == 0.0f && y == 0.0f) {
         x = 0.5f * (float)p->view.width;
         y = 0.5f * (float)height;
@@ -120,28 +145,10 @@ void tyni_chart_draw(const tyni_pass *p)
     if (!c.image->pixels || !tyni_pass_nearest(p, x, y, &index, &sample, &distance) ||
         !tyni_trace_row(p, index, &slice, &s, &finder, &tree) || !s.row->columns)
         return;
-    sample = tyni_clampi(sample, slice.first, slice.last);
     c.columns = s.row->columns;
     c.height = height;
     fill(&c, 0, c.image->width, 0, height, black);
     c.height = p->frame->debug == TYN_DEBUG_TREE ? (height + 2) / 3 : height;
     draw_row(&c, s.row);
-    at = tyni_slice_p(&slice, sample);
-    position = tyni_row_position(s.row, at);
-    length = tyni_slice_sight(&slice, &p->view, at, &v);
-    if (!tyni_pass_range(p, &v, s.depth[sample] * length, &t0, &t1))
-        return;
-    tyni_integral_begin(&it, &p->medium, p->lamp, &v, t0, t1, channels, 1);
-    for (int32_t i = 0; i < s.row->count; i++) {
-        const tyni_piece *piece = &s.row->pieces[i];
-        if (!tyni_ray_columns(piece, &it, &v, &first, &last, &from, &to))
-            continue;
-        first += piece->first;
-        last += piece->first;
-        c.top = 0;
-        c.height = p->frame->debug == TYN_DEBUG_TREE ? (height + 2) / 3 : height;
-        draw_ray(&c, s.row, position, first, last);
-        if (p->frame->debug == TYN_DEBUG_TREE)
-            draw_tree(&c, s.row, &tree, position, first, last, c.height, height - c.height);
-    }
+    draw_rays(p, &c, &slice, &s, &tree, tyni_clampi(sample, slice.first, slice.last));
 }

@@ -35,12 +35,28 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->maps = 1;
     config->lights = 1;
     config->workers = 1;
+    config->bases = 32;
+    config->columns = 128;
+    config->references = 3;
     return TYN_OK;
 }
 
 static int outside(int32_t x, int32_t low, int32_t high)
 {
     return x < low || x > high;
+}
+
+/* What prefiltered rows are made of. */
+static tyn_status fill_rows(tyn_config *c, const tyn_config *preset)
+{
+    c->bases = c->bases ? c->bases : preset->bases;
+    c->columns = c->columns ? c->columns : preset->columns;
+    c->references = c->references ? c->references : preset->references;
+    if (outside(c->bases, 4, 128) || c->bases % 4 || outside(c->columns, 4, 4096) || outside(c->references, 1, 4) ||
+        outside(c->paper, 0, 15) || (uint32_t)c->weights > (uint32_t)TYN_WEIGHTS_AVERAGE ||
+        (uint32_t)c->reference > (uint32_t)TYN_REFERENCE_GEOMETRIC)
+        return TYN_E_CONFIG;
+    return TYN_OK;
 }
 
 tyn_status tyni_config_fill(tyn_config *c)
@@ -69,10 +85,10 @@ tyn_status tyni_config_fill(tyn_config *c)
         return TYN_E_CONFIG;
     if (!(c->break_threshold > 0.0f && c->break_threshold <= 1.0f) || !(c->tolerance > 0.0f && c->tolerance <= 1.0f))
         return TYN_E_CONFIG;
-    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_NONE || (uint32_t)c->rays > (uint32_t)TYN_RAYS_COLUMNS ||
+    if ((uint32_t)c->method > (uint32_t)TYN_METHOD_HYBRID || (uint32_t)c->rays > (uint32_t)TYN_RAYS_COLUMNS ||
         (uint32_t)c->gather > (uint32_t)TYN_GATHER_ED10 || (uint32_t)c->kernel > (uint32_t)TYN_KERNEL_THRESHOLD)
         return TYN_E_CONFIG;
     if (outside(c->taps, 3, 5) || outside(c->downscale, 1, 8) || (c->downscale & (c->downscale - 1)) || c->budget < 0)
         return TYN_E_CONFIG;
-    return TYN_OK;
+    return fill_rows(c, &preset);
 }

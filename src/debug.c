@@ -87,6 +87,17 @@ static void paint_texture(const tyni_pass *p, int32_t x, int32_t y, float rgb[3]
     }
 }
 
+/* The rows of TYN_METHOD_PREFILTERED. */
+static void paint_basis(const tyni_pass *p, int32_t x, int32_t y, float rgb[3])
+{
+    int32_t line = (int32_t)((int64_t)y * p->slices.count / p->view.height);
+    int32_t column = (int32_t)((int64_t)x * p->fourier.columns / p->view.width);
+    paint(rgb, 0.1f, 0.0f, 0.1f);
+    if (p->method == TYN_METHOD_PREFILTERED)
+        tyni_fourier_show(&p->fourier, (const void *)(p->context->shelves + (size_t)line * p->context->shelf_bytes), column,
+                          rgb);
+}
+
 static int outside(const tyni_pass *p, int32_t x, int32_t y, float depth)
 {
     tyni_vec3 at = tyni_view_point(&p->view, (float)x + 0.5f, (float)y + 0.5f, tyni_view_depth(&p->view, depth));
@@ -124,6 +135,8 @@ void tyni_debug_pixel(const tyni_pass *p, int32_t x, int32_t y, float depth, int
         return; /* no epipolar pass: nothing to show */
     } else if (debug == TYN_DEBUG_SCATTER || debug == TYN_DEBUG_SOURCES) {
         paint_texture(p, x, y, rgb);
+    } else if (debug == TYN_DEBUG_BASIS) {
+        paint_basis(p, x, y, rgb);
     } else {
         paint_mark(debug, mark_at(p, x, y), rgb);
     }

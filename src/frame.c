@@ -20,7 +20,7 @@ static void choose_channels(tyni_pass *p)
 {
     const tyni_medium *m = &p->medium;
     float apart = (m->sigma[m->high] - m->sigma[m->low]) * p->view.far_depth;
-    int all = p->lamp->coloured || (p->context->lines.thirds && apart > 0.5f);
+    int all = p->lamp->coloured || p->method == TYN_METHOD_PREFILTERED || (p->context->lines.thirds && apart > 0.5f);
     p->count = all ? 3 : 2;
     if (!all && apart == 0.0f && p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
         p->count = 1;
@@ -42,8 +42,12 @@ static void begin_light(tyni_pass *p, const tyn_light *light)
         tyni_art_lamp(&c->lamp, light, p->frame);
     }
     /* at the light's own position there is no epipole, and a ray stays inside one texel: a ray for each pixel costs nothing */
-    if (p->method == TYN_METHOD_EPIPOLAR && p->lamp->no_epipole)
+    if (tyni_prefilter_method(p->method) && p->view.orthographic)
+        p->method = p->method == TYN_METHOD_HYBRID ? TYN_METHOD_EPIPOLAR : TYN_METHOD_MARCH;
+    if ((p->method == TYN_METHOD_EPIPOLAR || tyni_prefilter_method(p->method)) && p->lamp->no_epipole)
         p->method = TYN_METHOD_MARCH;
+    if (tyni_prefilter_method(p->method))
+        tyni_prefilter_begin(&p->fourier, &c->config, p->lamp, &p->medium, &p->view);
     p->lines = c->lines;
     p->lines.threshold = c->config.break_threshold;
     p->gather.way = c->config.gather;
@@ -54,7 +58,7 @@ static void begin_light(tyni_pass *p, const tyn_light *light)
     p->naive = 0;
     if (p->method == TYN_METHOD_SUBSAMPLE)
         tyni_trace_spread(p);
-    else if (p->method != TYN_METHOD_NONE && c->config.downscale > 1)
+    else if (p->method != TYN_METHOD_NONE && c->config.method != TYN_METHOD_PREFILTERED && c->config.downscale > 1)
         tyni_trace_coarse(p);
     choose_channels(p);
 }
@@ -64,9 +68,10 @@ static tyn_status render_light(tyni_pass *p, const tyni_jobs *jobs, const tyn_li
     tyn_status status = TYN_OK;
     uint64_t start = tyni_pass_now(p), middle;
     begin_light(p, light);
-    if (p->method == TYN_METHOD_EPIPOLAR) {
+    if (p->method == TYN_METHOD_PREFILTERED || tyni_pass_sliced(p)) {
         tyni_trace_layout(p);
-        status = tyni_jobs_run(jobs, tyni_trace_slice, p, p->slices.count);
+        status =
+            tyni_jobs_run(jobs, p->method == TYN_METHOD_PREFILTERED ? tyni_trace_shelf : tyni_trace_slice, p, p->slices.count);
     }
     middle = tyni_pass_now(p);
     if (status == TYN_OK)
@@ -180,13 +185,19 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     int32_t longer = tyni_maxi(g->width, g->height);
     tyni_scratch s;
     c->samples = tyni_mini(g->samples, longer);
-    if (g->downscale > 1) { /* a row of the coarse picture goes through the scratch of a line */
+    if (g->downscale > 1 &&
+        g->method != TYN_METHOD_PREFILTERED) { /* a row of the coarse picture goes through the scratch of a line */
         c->samples = tyni_maxi(c->samples, tyni_slice_points(longer, g->downscale));
         place_field(&c->grid, arena, (size_t)tyni_slice_points(g->height, g->downscale),
                     (size_t)tyni_slice_points(g->width, g->downscale), g->textured);
     }
-    place_field(&c->lines, arena, (size_t)g->slices, (size_t)c->samples, g->textured);
-    if (g->gather != TYN_GATHER_SHEAR) {
+    if (g->method == TYN_METHOD_PREFILTERED) {
+        c->shelf_bytes = tyni_prefilter_bytes(g);
+        c->shelves = tyni_arena_take(arena, (size_t)g->slices, c->shelf_bytes);
+    } else {
+        place_field(&c->lines, arena, (size_t)g->slices, (size_t)c->samples, g->textured);
+    }
+    if (g->gather != TYN_GATHER_SHEAR && g->method != TYN_METHOD_PREFILTERED) {
         c->spokes = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->spokes);
         c->slots = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->slots);
     }

@@ -35,6 +35,10 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);
     s->stats = tyni_arena_take(&arena, 1, TYN_STATS_BYTES);
+    if (c->config.method == TYN_METHOD_HYBRID)
+        s->shelf = tyni_arena_take(&arena, 1, tyni_prefilter_bytes(&c->config));
+    if (tyni_prefilter_method(c->config.method))
+        s->mill = tyni_arena_take(&arena, 1, tyni_prefilter_scratch(&c->config));
     if (c->config.rays == TYN_RAYS_TREE)
         s->nodes = tyni_arena_take(&arena, tyni_tree_room(columns), sizeof *s->nodes);
     if (c->config.rays == TYN_RAYS_SWEEP) {

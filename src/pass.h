@@ -6,6 +6,7 @@
 #include "gather.h"
 #include "jobs.h"
 #include "medium.h"
+#include "prefilter.h"
 #include "ray.h"
 #include "row.h"
 #include "slice.h"
@@ -31,6 +32,8 @@ typedef struct tyni_scratch {
     uint32_t *breaks, *rays, *fresh; /* bits */
     tyni_node *nodes;                /* TYN_RAYS_TREE, else NULL */
     tyni_sweep sweep;                /* arrays with TYN_RAYS_SWEEP, else NULL */
+    tyni_shelf *shelf;               /* TYN_METHOD_HYBRID: the slice's prefiltered rows, else NULL */
+    void *mill;                      /* what they are made in, also with TYN_METHOD_PREFILTERED, else NULL */
     tyn_stats *stats;
 } tyni_scratch;
 
@@ -44,10 +47,11 @@ typedef struct tyni_pass {
     const tyni_lamp *lamp;
     tyn_method method;
     tyni_slices slices;
-    tyni_field lines;   /* TYN_METHOD_EPIPOLAR: the finished slices */
-    tyni_gather gather; /* pixels from them */
-    tyni_grid grid;     /* rows 0: none; else pixels come from it */
-    int naive;          /* from the grid, pixels that nothing fits take what is nearest; else they get rays of their own */
+    tyni_field lines;     /* TYN_METHOD_EPIPOLAR, _HYBRID: the finished slices */
+    tyni_fourier fourier; /* TYN_METHOD_PREFILTERED, _HYBRID */
+    tyni_gather gather;   /* pixels from them */
+    tyni_grid grid;       /* rows 0: none; else pixels come from it */
+    int naive;            /* from the grid, pixels that nothing fits take what is nearest; else they get rays of their own */
     int32_t channels[3], count; /* the channels whose visibility is kept */
     int first, last;            /* of the lights */
 } tyni_pass;
@@ -55,8 +59,10 @@ typedef struct tyni_pass {
 struct tyn_context {
     tyn_config config; /* defaults filled in; isa is the one that was picked */
     size_t bytes;
-    int32_t samples;    /* room per line */
-    tyni_field lines;   /* slices * samples */
+    int32_t samples;  /* room per line */
+    tyni_field lines; /* slices * samples; not with TYN_METHOD_PREFILTERED, which has in its place: */
+    uint8_t *shelves; /* slices * shelf_bytes, else NULL */
+    size_t shelf_bytes;
     tyni_field grid;    /* downscale above 1: the coarse picture; else NULL */
     tyni_spoke *spokes; /* slices; IVB and ED10 */
     int32_t *slots;     /* the same */
@@ -68,6 +74,12 @@ struct tyn_context {
     tyni_lamp lamp;
     tyni_pass pass;
 };
+
+/* Lines of finished samples: epipolar or hybrid. */
+static inline int tyni_pass_sliced(const tyni_pass *p)
+{
+    return p->method == TYN_METHOD_EPIPOLAR || p->method == TYN_METHOD_HYBRID;
+}
 
 /* A worker's scratch, and its bytes; before it is placed, only the bytes. */
 size_t tyni_pass_scratch(const tyn_context *context, int32_t worker, tyni_scratch *scratch);

@@ -109,6 +109,25 @@ static void unwarp_each(const tyni_pass *p, const run *r)
     }
 }
 
+/* TYN_METHOD_PREFILTERED: from the rows of the slices beside each pixel. */
+static void unwarp_rows(const tyni_pass *p, const run *r)
+{
+    for (int32_t i = 0; i < r->count; i++) {
+        float px = (float)(r->x + i) + 0.5f, py = (float)r->y + 0.5f, value[3];
+        tyni_sight v;
+        if (!(r->to[i] > 0.0f))
+            continue;
+        tyni_view_sight(&p->view, px, py, &v);
+        if (!tyni_prefilter_pixel(&p->fourier, p->context->shelves, p->context->shelf_bytes, &p->slices, px, py, &v, r->from[i],
+                                  r->to[i], value)) {
+            r->rejected[i >> 5] |= 1u << (i & 31);
+            continue;
+        }
+        for (int32_t c = 0; c < 3; c++)
+            r->value[c][i] = value[c];
+    }
+}
+
 /* The light's part of each ray, where that is not all of it. */
 static void clip_rays(const tyni_pass *p, const run *r)
 {
@@ -141,7 +160,10 @@ static void shade_local(const tyni_pass *p, const run *r)
             light[m->middle] = between(low, high, m->blend);
         }
         tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
-        tyni_integral_norm(m, p->lamp, &v, r->from[i], r->to[i], norm);
+        if (p->method == TYN_METHOD_PREFILTERED)
+            tyni_prefilter_light(&p->fourier, &v, r->from[i], r->to[i], norm);
+        else
+            tyni_integral_norm(m, p->lamp, &v, r->from[i], r->to[i], norm);
         for (int32_t c = 0; c < 3; c++)
             r->light[c][i] += light[c] * norm[c] * p->lamp->colour[c];
     }
@@ -158,7 +180,9 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
         memset(r->from, 0, sizeof *r->from * (size_t)r->count);
         r->to = r->reach;
     }
-    if (p->method == TYN_METHOD_EPIPOLAR && p->slices.layout == TYNI_LAYOUT_SHEAR && !p->grid.rows && p->count < 3)
+    if (p->method == TYN_METHOD_PREFILTERED)
+        unwarp_rows(p, r);
+    else if (tyni_pass_sliced(p) && p->slices.layout == TYNI_LAYOUT_SHEAR && !p->grid.rows && p->count < 3)
         unwarp_shear(p, r);
     else
         unwarp_each(p, r);

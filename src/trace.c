@@ -14,7 +14,7 @@ void tyni_trace_layout(tyni_pass *p)
 {
     const tyn_config *c = &p->context->config;
     int32_t width = p->view.width, height = p->view.height, samples = p->context->samples;
-    if (c->gather == TYN_GATHER_SHEAR) {
+    if (c->gather == TYN_GATHER_SHEAR || p->method == TYN_METHOD_PREFILTERED) {
         tyni_slice_layout(&p->slices, p->lamp, width, height, c->slices, tyni_slice_stride(width, height, samples));
         return;
     }
@@ -74,6 +74,25 @@ static void row_value(const tyni_pass *p, const tyni_finder *finder, const tyni_
     tyni_pass_visible(p, light, norm, value);
 }
 
+/* Visibility of a ray from the slice's prefiltered rows; 0: they do not know it. */
+static int shelf_value(const tyni_pass *p, const tyni_shelf *shelf, const tyni_sight *v, float s, float at, float value[3])
+{
+    float t0, t1, all[3], exact[3], norm[3];
+    value[0] = value[1] = value[2] = 0.0f;
+    if (!tyni_pass_range(p, v, s, &t0, &t1))
+        return 1;
+    if (!tyni_prefilter_ray(&p->fourier, shelf, at, v, t0, t1, all))
+        return 0;
+    tyni_prefilter_light(&p->fourier, v, t0, t1, exact);
+    tyni_integral_norm(&p->medium, p->lamp, v, t0, t1, norm);
+    for (int32_t c = 0; c < 3; c++)
+        exact[c] *= all[c];
+    for (int32_t i = 0; i < p->count; i++)
+        all[i] = exact[p->channels[i]];
+    tyni_pass_visible(p, all, norm, value);
+    return 1;
+}
+
 /* The rays of the set bits, one at a time. */
 static void run_each(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
                      tyni_scratch *s)
@@ -85,9 +104,9 @@ static void run_each(const tyni_pass *p, const tyni_slice *slice, const tyni_fin
         length = tyni_slice_sight(slice, &p->view, at, &v);
         if (finder->rays == TYN_RAYS_SWEEP)
             tyni_sweep_to(&s->sweep, j);
-        if (finder->rays == TYN_RAYS_STEPS)
+        if (finder->rays == TYN_RAYS_STEPS && p->method != TYN_METHOD_HYBRID)
             tyni_pass_walk(p, &v, s->depth[j] * length, value);
-        else
+        else if (p->method != TYN_METHOD_HYBRID || !shelf_value(p, s->shelf, &v, s->depth[j] * length, at, value))
             row_value(p, finder, &v, s->depth[j] * length, at, s->stats, value);
         s->stats->rays++;
         s->value[0][j] = value[0];
@@ -102,7 +121,7 @@ static void take_bundle(const tyni_pass *p, const tyni_slice *slice, const tyni_
 {
     for (int32_t n = 0; n < b->count; n++) {
         int32_t j = samples[n];
-        float value[3];
+        float value[3] = {0.0f, 0.0f, 0.0f};
         if (b->texels[n] > 0.0f && tyni_ray_bundle_coarse(b, n, sigma[p->count - 1])) {
             tyni_sight v;
             float length = tyni_slice_sight(slice, &p->view, b->p[n], &v);
@@ -156,7 +175,7 @@ static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_fin
                      tyni_scratch *s)
 {
     int plain = p->lamp->kind == TYN_LIGHT_DIRECTIONAL && !p->lamp->coloured && p->lamp->lift == 0.0f && p->count < 3;
-    if (plain && finder->rays != TYN_RAYS_STEPS)
+    if (plain && finder->rays != TYN_RAYS_STEPS && p->method != TYN_METHOD_HYBRID)
         run_bundles(p, slice, finder, rays, s);
     else
         run_each(p, slice, finder, rays, s);
@@ -171,7 +190,7 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     finder->rays = config->rays;
     finder->tree = tree;
     finder->sweep = &s->sweep;
-    if (config->rays == TYN_RAYS_STEPS)
+    if (config->rays == TYN_RAYS_STEPS && !tyni_prefilter_method(p->method))
         return;
     tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,
                    p->lamp, &p->view, reach_of(p, slice, s->depth));
@@ -212,6 +231,33 @@ int tyni_trace_row(const tyni_pass *p, int32_t index, tyni_slice *slice, tyni_sc
     return 1;
 }
 
+void tyni_trace_shelf(void *argument, int32_t index, int32_t worker)
+{
+    const tyni_pass *p = argument;
+    tyni_shelf *shelf = (void *)(p->context->shelves + (size_t)index * p->context->shelf_bytes);
+    uint64_t time[4];
+    tyni_scratch s;
+    tyni_slice slice;
+    tyni_finder finder;
+    tyni_tree tree;
+    tyni_pass_scratch(p->context, worker, &s);
+    time[0] = tyni_pass_now(p);
+    shelf->valid = 0;
+    if (!sample_line(p, &slice, index, &s)) {
+        s.stats->culled++;
+        return;
+    }
+    s.stats->slices++;
+    time[1] = tyni_pass_now(p);
+    build_row(p, &slice, &s, &finder, &tree);
+    time[2] = tyni_pass_now(p);
+    tyni_prefilter_slice(&p->fourier, shelf, s.mill, s.row, &slice, &p->view, s.depth);
+    time[3] = tyni_pass_now(p);
+    s.stats->sample_ns += time[1] - time[0];
+    s.stats->row_ns += time[2] - time[1];
+    s.stats->line_ns += time[3] - time[2];
+}
+
 void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
 {
     const tyni_pass *p = argument;
@@ -235,6 +281,8 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     s.stats->slices++;
     s.stats->initial += initial;
     build_row(p, &slice, &s, &finder, &tree);
+    if (p->method == TYN_METHOD_HYBRID)
+        tyni_prefilter_slice(&p->fourier, s.shelf, s.mill, s.row, &slice, &p->view, s.depth);
     time[2] = tyni_pass_now(p);
     if (tyni_debug_marks(p->frame->debug))
         tyni_debug_mark_initial(p, index, &slice, s.rays, s.breaks);
@@ -299,10 +347,10 @@ static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stat
     length = tyni_view_sight(&p->view, px, py, &v);
     value[0] = value[1] = value[2] = 0.0f;
     if (!tyni_pass_range(p, &v, depth * length, &t0, &t1)) {
-        stats->rays += p->method != TYN_METHOD_EPIPOLAR;
+        stats->rays += !tyni_pass_sliced(p);
         return 0.0f;
     }
-    if (p->method != TYN_METHOD_EPIPOLAR) {
+    if (!tyni_pass_sliced(p)) {
         tyni_pass_walk(p, &v, depth * length, value);
         stats->rays++;
     } else if (!tyni_gather_lines(&p->gather, &p->lines, &p->slices, px, py, t1 / (length * p->view.far_depth), value)) {
@@ -330,10 +378,10 @@ void tyni_trace_grid(void *argument, int32_t index, int32_t worker)
         s.value[1][i] = value[1];
         s.value[2][i] = value[2];
     }
-    if (p->method != TYN_METHOD_EPIPOLAR)
+    if (!tyni_pass_sliced(p))
         s.stats->samples += g->columns;
     tyni_pass_store(p, &g->field, index, 0, g->columns - 1, &s);
-    stage = p->method == TYN_METHOD_EPIPOLAR ? &s.stats->unwarp_ns : &s.stats->ray_ns;
+    stage = tyni_pass_sliced(p) ? &s.stats->unwarp_ns : &s.stats->ray_ns;
     *stage += tyni_pass_now(p) - start - correct_ns;
     s.stats->correct_ns += correct_ns;
 }

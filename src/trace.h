@@ -16,6 +16,9 @@ void tyni_trace_layout(tyni_pass *pass);
  * -> interpolation -> the finished line. */
 void tyni_trace_slice(void *pass, int32_t index, int32_t worker);
 
+/* TYN_METHOD_PREFILTERED: a slice's depth and row of thresholds -> its prefiltered rows. */
+void tyni_trace_shelf(void *pass, int32_t index, int32_t worker);
+
 /* The first half of that, for those who look at rows: up to the row and what finds its lit columns; 0 where there is none. */
 int tyni_trace_row(const tyni_pass *pass, int32_t index, tyni_slice *slice, tyni_scratch *scratch, tyni_finder *finder,
                    tyni_tree *tree);

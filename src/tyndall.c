@@ -7,6 +7,7 @@
 #include "check.h"
 #include "composite.h"
 #include "config.h"
+#include "debug.h"
 #include "door.h"
 #include "frame.h"
 #include "jobs.h"
@@ -15,6 +16,7 @@
 
 /* A context takes as much room as TYN_MEMORY says. */
 typedef char context_fits[sizeof(struct tyn_context) <= TYN_CONTEXT_BYTES ? 1 : -1];
+typedef char shelf_fits[sizeof(tyni_shelf) == TYN_SHELF_BYTES ? 1 : -1];
 typedef char row_fits[sizeof(tyni_row) <= TYN_ROW_BYTES ? 1 : -1];
 typedef char bundle_fits[sizeof(tyni_bundle) <= TYN_BUNDLE_BYTES ? 1 : -1];
 typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
@@ -85,7 +87,10 @@ static tyn_status check_optional(const tyn_image *image, uint32_t formats, const
 
 static tyn_status check_debug(const tyn_config *c, const tyn_frame *f)
 {
-    if ((uint32_t)f->debug > (uint32_t)TYN_DEBUG_TREE || !tyni_finite(f->debug_x) || !tyni_finite(f->debug_y))
+    if ((uint32_t)f->debug > (uint32_t)TYN_DEBUG_BASIS || !tyni_finite(f->debug_x) || !tyni_finite(f->debug_y))
+        return TYN_E_DISPLAY;
+    if (c->method == TYN_METHOD_PREFILTERED ? tyni_debug_marks(f->debug) || f->debug == TYN_DEBUG_SCATTER
+                                            : f->debug == TYN_DEBUG_BASIS)
         return TYN_E_DISPLAY;
     return f->debug == TYN_DEBUG_TREE && c->rays != TYN_RAYS_TREE ? TYN_E_DISPLAY : TYN_OK;
 }

@@ -14,6 +14,8 @@ const rig_way rig_ways[RIG_WAYS] = {{"slices", TYN_METHOD_EPIPOLAR, TYN_RAYS_WOR
                                     {"subsample", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1},
                                     {"IVB, half size", TYN_METHOD_EPIPOLAR, TYN_RAYS_TREE, TYN_GATHER_IVB, 2},
                                     {"ED10", TYN_METHOD_EPIPOLAR, TYN_RAYS_SWEEP, TYN_GATHER_ED10, 1},
+                                    {"prefiltered", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1},
+                                    {"hybrid", TYN_METHOD_HYBRID, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1},
                                     {"none", TYN_METHOD_NONE, TYN_RAYS_WORDS, TYN_GATHER_SHEAR, 1}};
 void *rig_block(size_t bytes)
 {

@@ -38,7 +38,7 @@ typedef struct rig_way {
     tyn_gather gather;
     int32_t downscale;
 } rig_way;
-enum { RIG_WAYS = 7 };
+enum { RIG_WAYS = 9 };
 extern const rig_way rig_ways[RIG_WAYS];
 
 /* What a config must have room for: shadow size, lights, maps of a light, textures. */

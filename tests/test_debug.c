@@ -136,7 +136,8 @@ static void test_times(void)
         tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         const tyn_stats *s = &r->stats;
-        int lines = config.method == TYN_METHOD_EPIPOLAR, coarse = lines && config.downscale > 1;
+        int lines = config.method == TYN_METHOD_EPIPOLAR || config.method == TYN_METHOD_HYBRID,
+            coarse = lines && config.downscale > 1;
         uint64_t time = 0;
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
         CHECK(!s->slice_ns && !s->gather_ns && !s->total_ns && !s->sample_ns && !s->row_ns && !s->ray_ns && !s->line_ns);
@@ -145,7 +146,8 @@ static void test_times(void)
         frame.clock_context = &time;
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
         CHECK(s->total_ns == s->slice_ns + s->gather_ns && s->gather_ns > 0 && s->composite_ns > 0 && s->correct_ns > 0);
-        CHECK((s->sample_ns > 0) == lines && (s->row_ns > 0) == lines && (s->line_ns > 0) == lines);
+        int rows = lines || config.method == TYN_METHOD_PREFILTERED;
+        CHECK((s->sample_ns > 0) == rows && (s->row_ns > 0) == rows && (s->line_ns > 0) == rows);
         CHECK((s->ray_ns > 0) == (lines || config.method == TYN_METHOD_SUBSAMPLE));
         CHECK((s->upscale_ns > 0) == (coarse || config.method == TYN_METHOD_SUBSAMPLE));
         CHECK((s->unwarp_ns > 0) == (config.method != TYN_METHOD_SUBSAMPLE));

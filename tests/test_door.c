@@ -477,7 +477,11 @@ static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
         }
         /* ED10's lines are not stretched: at a lamp in view they have many samples to a pixel, and which of these rays cross so
          * few columns that they are walked hangs on how many pieces the columns are in. One pixel, beside the lamp. */
-        CHECK_NEAR(worst / most, 0, config.gather == TYN_GATHER_ED10 ? 0.04 : tolerance);
+        /* And in what order columns come hangs on the pieces: prefiltered sums round in other places. */
+        CHECK_NEAR(worst / most, 0,
+                   config.gather == TYN_GATHER_ED10          ? 0.04
+                   : config.method >= TYN_METHOD_PREFILTERED ? 2 * tolerance
+                                                             : tolerance);
     }
 }
 
@@ -582,7 +586,8 @@ static void test_cascades(void)
             light.more = maps + 1;
             light.more_count = 7;
             CHECK(rig_render(r, &config, &frame) == TYN_OK);
-            CHECK_NEAR(miss(r, truth), 0, one);
+            /* prefiltered rows ring a little differently with every threshold */
+            CHECK_NEAR(miss(r, truth), 0, config.method >= TYN_METHOD_PREFILTERED ? one + 0.0007 : one);
         }
         for (int i = 0; i < 8; i++)
             free((void *)(uintptr_t)maps[i].depth);

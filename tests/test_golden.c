@@ -24,6 +24,9 @@ static const struct {
     {"lamp-in-view", "lamp in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
     {"lamp-left-subsample", "lamp off the left", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
     {"bulb-in-view", "bulb in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
+    {"sun-ahead-prefiltered", "sun ahead", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
+    {"lamp-view-prefiltered", "lamp in view", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
+    {"sun-left-hybrid", "sun off the left", TYN_METHOD_HYBRID, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 1},
     {"lamp-above-reference", "lamp above", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_REFERENCE, 0},
 };
 enum { PICTURES = (int)(sizeof pictures / sizeof *pictures) };

@@ -443,7 +443,9 @@ static void test_stats(void)
         CHECK_NEAR(s->rays_percent, 100.0 * (double)(s->rays + s->rejected + s->corrected) / (W * H), 1e-4);
         CHECK(s->rejected >= 0 && s->rejected <= W * H && s->walks >= 0 && s->walks <= s->rays && s->breaks <= s->samples);
         CHECK((config.downscale == 1) == (s->corrected == 0) && s->corrected >= 0 && s->corrected < W * H / 4);
-        if (config.method == TYN_METHOD_EPIPOLAR) {
+        if (config.method >= TYN_METHOD_PREFILTERED) {
+            CHECK(s->slices > 8 && s->slices <= 2 * (W + H) && s->columns > 0 && s->breaks > 0);
+        } else if (config.method == TYN_METHOD_EPIPOLAR) {
             CHECK(s->slices > 8 && s->slices <= 2 * (W + H) && s->samples >= s->rays && s->breaks > 0);
             CHECK(s->initial > s->slices && s->initial <= s->rays && s->culled >= 0);
             CHECK((s->columns > 0) == (config.rays != TYN_RAYS_STEPS) && (s->looked > 0) == (s->columns > 0));

@@ -57,13 +57,14 @@ expect 'no value' 2 "$tyndall" render good.scene -o
 expect 'ending' 2 "$tyndall" render good.scene -o o/a.jpg
 expect 'ending of --depth' 2 "$tyndall" render good.scene -o o/a.png --depth o/d.png
 expect 'one name twice' 2 "$tyndall" render good.scene -o o/a.pfm --scatter o/a.pfm
-for bad in '--size 0x9' '--size 10' '--size 10x' '--size 10x10x10' '--size 32769x1' '--size -1x1' '--method tree' '--method hybrid' \
-    '--method prefiltered' '--rays trees' '--steps 0' '--steps 4097' '--steps 1e2' '--slices 7' '--slices 65537' '--samples 1' \
+for bad in '--size 0x9' '--size 10' '--size 10x' '--size 10x10x10' '--size 32769x1' '--size -1x1' '--method tree' \
+    '--rays trees' '--steps 0' '--steps 4097' '--steps 1e2' '--slices 7' '--slices 65537' '--samples 1' \
     '--initial-step 3' '--initial-step 128' '--break 0' '--break 1.5' '--break x' '--break nan' '--shadow-size 0' \
     '--shadow-size 16385' '--preset best' '--threads 0' '--threads 65' '--threads two' '--exposure 0' '--exposure -1' \
-    '--exposure inf' '--debug trees' '--debug basis' '--gather ed' '--taps 2' '--taps 6' '--kernel box' '--downscale 3' \
-    '--downscale 16' '--tolerance 0' '--tolerance 2' '--budget 0' '--at 3' '--at 3,' '--at -1,2' '--bases 8' '--weights average' \
-    '--rectify epipolar' '--splits 4' '--isa mmx' '--frames 1-2' '--unknown' '-x'; do
+    '--exposure inf' '--debug trees' '--gather ed' '--taps 2' '--taps 6' '--kernel box' '--downscale 3' \
+    '--downscale 16' '--tolerance 0' '--tolerance 2' '--budget 0' '--at 3' '--at 3,' '--at -1,2' \
+    '--bases 6' '--bases 132' '--weights none' '--columns 3' '--references 5' '--rectify none' '--splits 7' \
+    '--isa mmx' '--frames 1-2' '--unknown' '-x'; do
     # shellcheck disable=SC2086
     expect "$bad" 2 "$tyndall" render good.scene -o o/a.png $bad && says "$bad is named" "${bad%% *}"
 done
@@ -93,12 +94,14 @@ for value in pixels slices culled samples breaks initial rays rays_percent walks
     stage_upscale_ms stage_correct_ms stage_composite_ms total_ms; do
     empty "--stats has $value" "$(grep -q "^$value [0-9.e+-]*\$" out.txt || cat out.txt)"
 done
-for method in march subsample none; do
+for method in march subsample none prefiltered hybrid; do
     expect "--method $method" 0 "$tyndall" render good.scene -o "o/$method.pfm" --method "$method" --rays steps
 done
-for debug in lines samples breaks sources scatter row tree rejected outside; do
+for debug in lines samples breaks sources scatter row tree rejected outside basis; do
     expect "--debug $debug" 0 "$tyndall" render good.scene -o "o/$debug.png" --debug "$debug"
 done
+expect '--rectify projective' 0 "$tyndall" render good.scene -o o/rect.png --method prefiltered --bases 16 --columns 64 \
+    --references 2 --weights average --rectify projective --splits 2
 expect '--debug row --at' 0 "$tyndall" render good.scene -o o/row2.png --debug row --at 3,40
 empty 'another row' "$(cmp -s o/row.png o/row2.png && echo the same)"
 for gather in shear ivb ed10; do

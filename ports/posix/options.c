@@ -16,6 +16,8 @@ static const word methods[] = {{"epipolar", TYN_METHOD_EPIPOLAR},
                                {"march", TYN_METHOD_MARCH},
                                {"subsample", TYN_METHOD_SUBSAMPLE},
                                {"none", TYN_METHOD_NONE},
+                               {"prefiltered", TYN_METHOD_PREFILTERED},
+                               {"hybrid", TYN_METHOD_HYBRID},
                                {NULL, 0}};
 static const word rays[] = {{"words", TYN_RAYS_WORDS},     {"tree", TYN_RAYS_TREE},   {"sweep", TYN_RAYS_SWEEP},
                             {"columns", TYN_RAYS_COLUMNS}, {"steps", TYN_RAYS_STEPS}, {NULL, 0}};
@@ -27,11 +29,19 @@ static const word presets[] = {{"handheld", TYN_PRESET_HANDHELD},
                                {"quality", TYN_PRESET_QUALITY},
                                {"reference", TYN_PRESET_REFERENCE},
                                {NULL, 0}};
-static const word debugs[] = {{"lines", TYN_DEBUG_LINES},     {"samples", TYN_DEBUG_SAMPLES},
-                              {"breaks", TYN_DEBUG_BREAKS},   {"sources", TYN_DEBUG_SOURCES},
-                              {"scatter", TYN_DEBUG_SCATTER}, {"row", TYN_DEBUG_ROW},
-                              {"tree", TYN_DEBUG_TREE},       {"rejected", TYN_DEBUG_REJECTED},
-                              {"outside", TYN_DEBUG_OUTSIDE}, {NULL, 0}};
+static const word debugs[] = {{"lines", TYN_DEBUG_LINES},
+                              {"samples", TYN_DEBUG_SAMPLES},
+                              {"breaks", TYN_DEBUG_BREAKS},
+                              {"sources", TYN_DEBUG_SOURCES},
+                              {"scatter", TYN_DEBUG_SCATTER},
+                              {"row", TYN_DEBUG_ROW},
+                              {"tree", TYN_DEBUG_TREE},
+                              {"rejected", TYN_DEBUG_REJECTED},
+                              {"outside", TYN_DEBUG_OUTSIDE},
+                              {"basis", TYN_DEBUG_BASIS},
+                              {NULL, 0}};
+static const word weights[] = {{"transmittance", TYN_WEIGHTS_TRANSMITTANCE}, {"average", TYN_WEIGHTS_AVERAGE}, {NULL, 0}};
+static const word rectifications[] = {{"epipolar", RENDER_EPIPOLAR - 1}, {"projective", RENDER_PROJECTIVE - 1}, {NULL, 0}};
 
 static const word isas[] = {{"scalar", TYN_ISA_SCALAR},
                             {"sse2", TYN_ISA_SSE2},
@@ -44,9 +54,9 @@ static const word isas[] = {{"scalar", TYN_ISA_SCALAR},
 /* Options that set one number of the settings. */
 typedef struct setting {
     const char *name;
-    enum { COUNT, POWER_OF_TWO, NUMBER, WORD } kind;
+    enum { COUNT, POWER_OF_TWO, FOURS, NUMBER, WORD } kind;
     size_t at;         /* in render_settings: int32_t, float for a NUMBER */
-    int32_t low, high; /* of COUNT and POWER_OF_TWO */
+    int32_t low, high; /* of COUNT, POWER_OF_TWO and FOURS, multiples of 4 */
     float most;        /* of a NUMBER, which is above 0 */
     const word *words;
 } setting;
@@ -80,6 +90,12 @@ static const setting settings[] = {WORD_AT("--method", method, methods),
                                    NUMBER_AT("--break", break_threshold, 1.0f),
                                    NUMBER_AT("--tolerance", tolerance, 1.0f),
                                    POWER_AT("--downscale", downscale, 8),
+                                   {"--bases", FOURS, offsetof(render_settings, bases), 4, 128, 0.0f, NULL},
+                                   COUNT_AT("--columns", columns, 4, 4096),
+                                   COUNT_AT("--references", references, 1, 4),
+                                   WORD_AT("--weights", weights, weights),
+                                   WORD_AT("--rectify", rectify, rectifications),
+                                   COUNT_AT("--splits", splits, 1, RENDER_FACES),
                                    COUNT_AT("--budget", budget, 1, 0x7fffffff),
                                    COUNT_AT("--shadow-size", shadow_size, 1, TYN_MAX_SHADOW),
                                    WORD_AT("--preset", preset, presets),
@@ -89,7 +105,7 @@ static const setting settings[] = {WORD_AT("--method", method, methods),
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
 /* In the command line's plan, not in the library yet. */
-static const char *const later[] = {"--bases", "--weights", "--rectify", "--splits", "--frames", NULL};
+static const char *const later[] = {"--frames", NULL};
 
 static int bad(const char *option, const char *value, const char *why)
 {
@@ -118,13 +134,11 @@ static int whole(const char *text, long low, long high, const char **end, int32_
 
 static int take_count(const setting *s, const char *value, int32_t *out)
 {
-    char why[80] = "must be a power of two", *at = why;
-    if (whole(value, s->low, s->high, NULL, out) == 0 && (s->kind == COUNT || (*out & (*out - 1)) == 0))
+    char why[80], *at = why;
+    if (whole(value, s->low, s->high, NULL, out) == 0 &&
+        (s->kind == COUNT || (s->kind == FOURS ? *out % 4 == 0 : (*out & (*out - 1)) == 0)))
         return 0;
-    if (s->kind == COUNT)
-        at += sprintf(at, "must be a whole number");
-    else
-        at += strlen(at);
+    at += sprintf(at, "must be a %s", s->kind == COUNT ? "whole number" : s->kind == FOURS ? "multiple of 4" : "power of two");
     sprintf(at, " from %ld to %ld", (long)s->low, (long)s->high);
     return bad(s->name, value, why);
 }
@@ -234,7 +248,7 @@ static int is_in(const char *name, const char *const *list)
 }
 
 /* What only `render` can do: a frame has its size and its surfaces already. */
-static const char *const of_scenes[] = {"--size", "--surface", "--depth", "--frame", NULL};
+static const char *const of_scenes[] = {"--rectify", "--splits", "--size", "--surface", "--depth", "--frame", NULL};
 
 static int takes_value(const char *name)
 {
@@ -307,7 +321,10 @@ static void help_of_render(void)
            "  --depth F.pfm      also the view-space depth\n"
            "  --frame PREFIX     also PREFIX.frame and what it names: all that tyndall post needs for the same picture\n"
            "  --size WxH         instead of the scene's\n"
-           "  --shadow-size N    shadow map, texels, 1 .. 16384\n");
+           "  --shadow-size N    shadow map, texels, 1 .. 16384\n"
+           "  --rectify R        epipolar (default) or projective: shadow maps whose rows are view rays, for a directional\n"
+           "                     light off the screen\n"
+           "  --splits N         of projective ones, 1 .. 6 (default 4)\n");
 }
 
 static void help_of_post(void)
@@ -345,7 +362,7 @@ void options_help(options_command command)
         "                     16 bit values low byte first)\n"
         "  --scatter F.pfm    also the scattered light alone\n"
         "  --preset P         handheld, balanced, quality (default), reference\n"
-        "  --method M         epipolar (default), march (every pixel), subsample, none\n"
+        "  --method M         epipolar (default), march (every pixel), subsample, none, prefiltered, hybrid\n"
         "  --rays R           words (default), tree, sweep, columns: the same picture; steps: fixed steps, see --steps\n"
         "  --steps N          per ray, 1 .. 4096\n"
         "  --gather G         shear (default), ivb, ed10: lines on the screen, and pixels from them\n"
@@ -358,9 +375,13 @@ void options_help(options_command command)
         "  --tolerance T      refinement on light: error that rays between rays are set for, above 0, at most 1 (never)\n"
         "  --downscale F      1, 2, 4, 8: computed for each such row and column, then scaled up\n"
         "  --budget N         of --method subsample: rays, about\n"
+        "  --bases M          of prefiltered and hybrid: sines and cosines, 4, 8 .. 128 (default 32)\n"
+        "  --weights W        transmittance (default) or average\n"
+        "  --references N     reference rays of a slice, 1 .. 4 (default 3)\n"
+        "  --columns N        stored columns of a slice, 4 .. 4096 (default 128)\n"
         "  --threads N        1 .. 64; default: the machine's\n"
         "  --exposure E       multiplies radiance; default: automatic for display output, 1 for .pfm\n"
-        "  --debug V          draw lines, samples, breaks, sources, scatter, row, tree, rejected or outside instead\n"
+        "  --debug V          draw lines, samples, breaks, sources, scatter, row, tree, rejected, outside or basis instead\n"
         "  --at X,Y           of --debug row and tree: the pixel whose slice and ray are drawn; default: the middle\n"
         "  --isa I            scalar, sse2, avx2, avx512, neon or wasm; default: the best there is. All give the same bytes\n"
         "  --stats            print one \"name value\" a line\n"

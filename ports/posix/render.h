@@ -6,12 +6,18 @@
 #include "pool.h"
 #include "scene.h"
 
+/* Shadow maps of a directional light: fitted; or in projective rectification where that is of use, or wherever it is possible.
+ */
+typedef enum render_rectify { RENDER_DEFAULT, RENDER_EPIPOLAR, RENDER_PROJECTIVE, RENDER_FORCED } render_rectify;
+
 /* Zero bytes mean the defaults: the preset's. */
 typedef struct render_settings {
     int32_t width, height;                                    /* 0: the scene's */
     int32_t preset, method, rays, gather, kernel, debug, isa; /* a value of the enum + 1 */
     int32_t steps, slices, samples, initial_step, shadow_size;
     int32_t taps, downscale, budget;
+    int32_t bases, columns, references, weights; /* weights: of the enum + 1 */
+    int32_t rectify, splits;                     /* render_rectify; maps of RENDER_PROJECTIVE, 1 .. RENDER_FACES, 0: 4 */
     float break_threshold, tolerance;
     float exposure;                            /* automatic for display, 1 for linear pictures */
     float debug_x, debug_y;                    /* as in tyn_frame */

@@ -33,6 +33,8 @@ tyn_status shafts_config(tyn_config *c, const render_settings *r, int32_t width,
     c->rays = r->rays ? (tyn_rays)(r->rays - 1) : c->rays;
     if (r->debug == TYN_DEBUG_TREE + 1)
         c->rays = TYN_RAYS_TREE;
+    if (r->debug == TYN_DEBUG_BASIS + 1)
+        c->method = TYN_METHOD_PREFILTERED;
     c->gather = r->gather ? (tyn_gather)(r->gather - 1) : c->gather;
     c->kernel = r->kernel ? (tyn_kernel)(r->kernel - 1) : c->kernel;
     choose(&c->steps, r->steps);
@@ -42,6 +44,10 @@ tyn_status shafts_config(tyn_config *c, const render_settings *r, int32_t width,
     choose(&c->taps, r->taps);
     choose(&c->downscale, r->downscale);
     choose(&c->budget, r->budget);
+    choose(&c->bases, r->bases);
+    choose(&c->columns, r->columns);
+    choose(&c->references, r->references);
+    c->weights = r->weights ? (tyn_weights)(r->weights - 1) : c->weights;
     choose(&c->shadow_size, r->shadow_size);
     if (r->break_threshold > 0.0f)
         c->break_threshold = r->break_threshold;
