@@ -69,9 +69,13 @@ TYNI_V_INLINE void TYNI_V(pixel_tap)(TYNI_V(pixel_sum) * s, const tyni_field *f,
     const v_float off = v_abs(at - other), limit = f->threshold * v_min(at, other);
     const v_float low = v_to_float(v_iand(entry, ten)) * (1.0f / 1023.0f);
     const v_float high = v_to_float(v_iand(v_shr(entry, 10), ten)) * (1.0f / 1023.0f);
-    v_float ratio = limit / off;
-    ratio = ratio * ratio;
-    ratio = v_select(v_le(off, limit), v_set(1.0f), ratio * ratio);
+    const v_mask same = v_le(off, limit);
+    v_float ratio = v_set(1.0f);
+    if (!v_all(same)) {
+        ratio = limit / off;
+        ratio = ratio * ratio;
+        ratio = v_select(same, v_set(1.0f), ratio * ratio);
+    }
     weight = v_select(v_ieq(code, v_iset(0)), v_set(0.0f), weight * ratio);
     s->weight = s->weight + weight;
     s->low = s->low + weight * (low * low * l->scale[side][0]);
@@ -141,8 +145,9 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
             s.high = v_select(lost, more.high, s.high);
             fits = v_mand(wanted, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
         }
-        v_store_n(r->value[0] + i, v_select(fits, s.low / s.weight, v_set(0.0f)), n);
-        v_store_n(r->value[1] + i, v_select(fits, s.high / s.weight, v_set(0.0f)), n);
+        s.weight = 1.0f / s.weight;
+        v_store_n(r->value[0] + i, v_select(fits, s.low * s.weight, v_set(0.0f)), n);
+        v_store_n(r->value[1] + i, v_select(fits, s.high * s.weight, v_set(0.0f)), n);
         for (uint32_t bits = v_word(v_mandnot(wanted, fits)); bits; bits &= bits - 1) {
             const int32_t j = i + tyni_ctz32(bits);
             r->rejected[j >> 5] |= 1u << (j & 31);
