@@ -3,6 +3,7 @@
 #define TYNI_MEDIUM_H
 
 #include "base.h"
+#include "lanes/lanes.h"
 #include "vec.h"
 #include "view.h"
 
@@ -88,5 +89,8 @@ void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, const 
 
 /* The integrand per dt in all channels. */
 void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t, float density[3]);
+
+#define TYNI_KERNEL "medium_kernel.h"
+#include "lanes/each.h"
 
 #endif

@@ -105,21 +105,27 @@ int tyni_pass_range(const tyni_pass *p, const tyni_sight *v, float s, float *t0,
     return s > 0.0f && tyni_view_clip(p->lamp, v, t0, t1);
 }
 
+/* A function of its own: its table takes stack that steps need. */
+static TYNI_NOINLINE void walk_exactly(const tyni_pass *p, const tyni_sight *v, float t0, float t1, float light[3])
+{
+    tyni_integral it;
+    tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
+    tyni_walk_ray(p->lamp, &it, v, light);
+}
+
 void tyni_pass_walk(const tyni_pass *p, const tyni_sight *v, float s, float value[3])
 {
     const tyn_config *config = &p->context->config;
     float t0, t1, norm[3], light[3] = {0.0f, 0.0f, 0.0f}, all[3];
-    tyni_integral it;
     value[0] = value[1] = value[2] = 0.0f;
     if (!tyni_pass_range(p, v, s, &t0, &t1))
         return;
     if (config->rays == TYN_RAYS_STEPS) {
-        tyni_walk_steps(p->lamp, &p->medium, v, t0, t1, config->steps, all);
+        tyni_walk_steps(config->isa, p->lamp, &p->medium, v, t0, t1, config->steps, all);
         for (int32_t i = 0; i < p->count; i++)
             light[i] = all[p->channels[i]];
     } else {
-        tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
-        tyni_walk_ray(p->lamp, &it, v, light);
+        walk_exactly(p, v, t0, t1, light);
     }
     tyni_integral_norm(&p->medium, p->lamp, v, t0, t1, norm);
     tyni_pass_visible(p, light, norm, value);

@@ -203,7 +203,10 @@ static void correct(const tyni_pass *p, const run *r)
         float light[3];
         tyni_sight v;
         tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
-        tyni_walk_pixel(p->lamp, &p->medium, &v, r->reach[i], steps, light);
+        if (steps)
+            tyni_walk_pixel_steps(p->context->config.isa, p->lamp, &p->medium, &v, r->reach[i], steps, light);
+        else
+            tyni_walk_pixel(p->lamp, &p->medium, &v, r->reach[i], light);
         for (int32_t c = 0; c < 3; c++)
             r->light[c][i] += light[c];
         count++;

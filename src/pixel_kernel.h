@@ -165,20 +165,6 @@ TYNI_V_INLINE v_float TYNI_V(pixel_between)(v_float a, v_float b, float blend)
     return v_select(near, straight, a * v_exp(blend * v_log(b / a)));
 }
 
-/* What the medium scatters towards the camera: tyni_medium_mix in channel c. */
-TYNI_V_INLINE void TYNI_V(pixel_mix)(const tyni_medium *m, v_float cosine, v_float mix[3])
-{
-    for (int32_t c = 0; c < 3; c++)
-        mix[c] = m->isotropic[c] + m->rayleigh[c] * (1.0f + cosine * cosine);
-    for (int32_t i = 0; i < m->hg_count; i++) {
-        const float g = m->hg[i].g;
-        const v_float d = v_max((1.0f - g) * (1.0f - g) + (2.0f * g) * (1.0f - cosine), v_set(1e-12f));
-        const v_float f = 1.0f / (d * v_sqrt(d));
-        for (int32_t c = 0; c < 3; c++)
-            mix[c] = mix[c] + m->hg[i].scale[c] * f;
-    }
-}
-
 /* Bits i .. i + v_n - 1, i a multiple of v_n, as a mask. */
 TYNI_V_INLINE v_mask TYNI_V(pixel_bits)(const uint32_t *words, int32_t i)
 {
@@ -199,7 +185,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_shade)(const tyni_pass *p, const run *r)
         v_float mix[3], light[3];
         if (v_none(wanted))
             continue;
-        TYNI_V(pixel_mix)(m, v_load(r->cosine + i), mix);
+        TYNI_V(medium_mix)(m, v_load(r->cosine + i), mix);
         for (int32_t c = 0; c < 3; c++)
             light[c] = v_load(r->value[c] + i);
         if (p->count != 3) {

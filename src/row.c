@@ -129,14 +129,6 @@ static void course_begin(course *c, const float u[2], const float v[2])
     c->steps = tyni_maxi(tyni_ceili(c->to), 1);
 }
 
-/* Texels of 16 bits, one by one: a vector's load would read beyond the last. */
-static void load16(const tyni_texels *t, const uint8_t *texels, const int32_t *offset, int32_t n, float *out)
-{
-    (void)t;
-    for (int32_t i = 0; i < n; i++)
-        out[i] = (float)*(const uint16_t *)(const void *)(texels + offset[i]);
-}
-
 #define TYNI_KERNEL "row_kernel.h"
 #include "lanes/each.h"
 

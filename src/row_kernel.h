@@ -1,26 +1,5 @@
 /* row_kernel.h - a template: thresholds of a row, for row.c. */
 
-/* tyni_texels_z of what is stored */
-TYNI_V_INLINE v_float TYNI_V(row_depth)(const tyni_texels *t, v_float stored)
-{
-    const v_float z = (stored - t->end) * t->step, zero = v_set(0.0f);
-    if (t->inverse)
-        return v_select(v_mand(v_gt(z, zero), v_lt(z, v_set(t->limit))), 1.0f / v_max(z, v_set(1e-6f)), zero);
-    return v_select(v_gt(z, zero), v_min(z, v_set(1.0f)), zero);
-}
-
-TYNI_V_INLINE v_float TYNI_V(row_texels)(const tyni_texels *t, v_int offset)
-{
-    if (t->bytes == 2) {
-        int32_t offsets[v_n];
-        float out[v_n];
-        v_istore(offsets, offset);
-        load16(t, t->pixels, offsets, v_n, out);
-        return TYNI_V(row_depth)(t, v_load(out));
-    }
-    return TYNI_V(row_depth)(t, v_from_bits(v_igather(t->pixels, offset)));
-}
-
 /* The threshold of a surface at column coordinate g and map depth z: 0 is dark even at the lit end, 65535 is lit to the dark
  * end, as it is where there is nothing (z = 0). */
 TYNI_V_INLINE v_int TYNI_V(row_column)(const ends *e, v_float g, v_float z)
@@ -54,12 +33,12 @@ static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const course *c
         v_float cut = v_set(1.0f);
         if (!v_all(same)) /* |slope| <= 1: they are neighbours */
             cut = v_select(same, cut, v_clamp((v_to_float(v_imax(a, b)) - from) / c->slope, v_set(0.0f), v_set(1.0f)));
-        ta = TYNI_V(row_column)(e, at + 0.5f * cut, TYNI_V(row_texels)(t, v_iadd(base, v_imul(a, v_iset(aside)))));
+        ta = TYNI_V(row_column)(e, at + 0.5f * cut, TYNI_V(door_texels)(t, v_iadd(base, v_imul(a, v_iset(aside)))));
         tb = ta;
         if (!v_all(same))
             tb = v_iselect(
                 same, ta,
-                TYNI_V(row_column)(e, at + 0.5f + 0.5f * cut, TYNI_V(row_texels)(t, v_iadd(base, v_imul(b, v_iset(aside))))));
+                TYNI_V(row_column)(e, at + 0.5f + 0.5f * cut, TYNI_V(door_texels)(t, v_iadd(base, v_imul(b, v_iset(aside))))));
         v_store_n(split + k, cut, steps - k);
         v_istore_n(threshold + 2 * k, low_first ? v_ior(ta, v_shl(tb, 16)) : v_ior(tb, v_shl(ta, 16)), steps - k);
     }

@@ -2,6 +2,7 @@
 #include "walk.h"
 
 #include "base.h"
+#include "lanes/lanes.h"
 #include "line.h"
 #include "meter.h"
 #include "num.h"
@@ -144,23 +145,6 @@ void tyni_walk_ray(const tyni_lamp *lamp, const tyni_integral *it, const tyni_si
     tyni_meter_end(&m);
 }
 
-static int point_lit(const tyni_lamp *lamp, const tyni_sight *v, float t)
-{
-    for (int32_t i = 0; i < lamp->map_count; i++) {
-        const tyni_map *map = &lamp->maps[i];
-        float w = tyni_line_at(tyni_line_along(&map->w, v), t), depth, x, y;
-        if (!(w > 0.0f))
-            continue;
-        x = tyni_line_at(tyni_line_along(&map->u, v), t) / w;
-        y = tyni_line_at(tyni_line_along(&map->v, v), t) / w;
-        if (!(x >= 0.0f && y >= 0.0f && x < (float)map->texels.width && y < (float)map->texels.height))
-            continue;
-        depth = tyni_texels_at(&map->texels, (int32_t)x, (int32_t)y);
-        return !(depth > 0.0f) || tyni_line_at(tyni_line_along(&map->z, v), t) / w >= depth;
-    }
-    return lamp->outside;
-}
-
 /* ED10 marches inside the light's frustum alone. Narrows t to what the maps cover, from the first to the last, and adds the
  * light before and after it in closed form, where there is one. */
 static void inside_frustum(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t[2], float light[3])
@@ -187,51 +171,91 @@ static void inside_frustum(const tyni_lamp *lamp, const tyni_medium *medium, con
     t[1] = to;
 }
 
-void tyni_walk_steps(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1, int32_t steps,
-                     float light[3])
+/* Steps side by side: the middle of step i is at from + (i + 0.5) dt. */
+typedef struct stride {
+    float from, dt;
+    int32_t steps;
+} stride;
+
+/* A map's forms along the ray. */
+typedef struct trail {
+    tyni_line u, v, z, w;
+} trail;
+
+static void trail_of(trail *t, const tyni_map *map, const tyni_sight *v)
 {
-    float part[2], dt, density[3], rgb[3] = {1.0f, 1.0f, 1.0f}, dark[3] = {0.0f, 0.0f, 0.0f};
+    t->u = tyni_line_along(&map->u, v);
+    t->v = tyni_line_along(&map->v, v);
+    t->z = tyni_line_along(&map->z, v);
+    t->w = tyni_line_along(&map->w, v);
+}
+
+/* Slides and tints at n places; red, green and blue `pitch` apart. */
+static void colours(const tyni_lamp *lamp, const tyni_sight *v, const float *t, int32_t n, float *rgb, int32_t pitch)
+{
+    for (int32_t i = 0; i < n; i++) {
+        float one[3];
+        tyni_view_colour(lamp, tyni_sight_at(v, t[i]), one);
+        for (int32_t c = 0; c < 3; c++)
+            rgb[c * pitch + i] = one[c];
+    }
+}
+
+#define TYNI_KERNEL "walk_kernel.h"
+#include "lanes/each.h"
+
+void tyni_walk_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1,
+                     int32_t steps, float light[3])
+{
+    float part[2], dark[3] = {0.0f, 0.0f, 0.0f};
+    stride s;
     light[0] = light[1] = light[2] = 0.0f;
     part[0] = t0;
     part[1] = t1;
     if (!(t0 < t1))
         return;
     inside_frustum(lamp, medium, v, part, light);
-    dt = (part[1] - part[0]) / (float)steps;
-    for (int32_t i = 0; i < steps && dt > 0.0f; i++) {
-        float t = part[0] + ((float)i + 0.5f) * dt;
-        int lit = point_lit(lamp, v, t);
-        if (!lit && lamp->lift == 0.0f)
-            continue;
-        tyni_integral_density(medium, lamp, v, t, density);
-        if (lamp->coloured)
-            tyni_view_colour(lamp, tyni_sight_at(v, t), rgb);
-        for (int32_t c = 0; c < 3; c++)
-            *(lit ? &light[c] : &dark[c]) += density[c] * dt * rgb[c];
-    }
+    s.from = part[0];
+    s.dt = (part[1] - part[0]) / (float)steps;
+    s.steps = steps;
+    if (s.dt > 0.0f)
+        TYNI_LANES_CALL(isa, walk_steps, (lamp, medium, v, &s, 1, light));
+    if (s.dt > 0.0f && lamp->lift != 0.0f)
+        TYNI_LANES_CALL(isa, walk_steps, (lamp, medium, v, &s, 0, dark));
     for (int32_t c = 0; c < 3; c++)
         light[c] = tyni_maxf(light[c] + lamp->lift * dark[c], 0.0f);
 }
 
-void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, int32_t steps,
-                     float light[3])
+/* The light's colour and, of a sun, the phase function. */
+static void colour_in(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float light[3])
+{
+    float mix[3] = {1.0f, 1.0f, 1.0f};
+    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
+        tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v->d, lamp->to_light), -1.0f, 1.0f), mix);
+    for (int32_t c = 0; c < 3; c++)
+        light[c] *= mix[c] * lamp->colour[c];
+}
+
+void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, float light[3])
 {
     static const int32_t channels[3] = {0, 1, 2};
-    float t0 = 0.0f, t1 = s, mix[3];
+    float t0 = 0.0f, t1 = s;
     tyni_integral it;
     light[0] = light[1] = light[2] = 0.0f;
     if (!tyni_view_clip(lamp, v, &t0, &t1))
         return;
-    if (steps) {
-        tyni_walk_steps(lamp, medium, v, t0, t1, steps, light);
-    } else {
-        tyni_integral_begin(&it, medium, lamp, v, t0, t1, channels, 3);
-        tyni_walk_ray(lamp, &it, v, light);
-    }
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
-        tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v->d, lamp->to_light), -1.0f, 1.0f), mix);
-    else
-        mix[0] = mix[1] = mix[2] = 1.0f;
-    for (int32_t c = 0; c < 3; c++)
-        light[c] *= mix[c] * lamp->colour[c];
+    tyni_integral_begin(&it, medium, lamp, v, t0, t1, channels, 3);
+    tyni_walk_ray(lamp, &it, v, light);
+    colour_in(lamp, medium, v, light);
+}
+
+void tyni_walk_pixel_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s,
+                           int32_t steps, float light[3])
+{
+    float t0 = 0.0f, t1 = s;
+    light[0] = light[1] = light[2] = 0.0f;
+    if (!tyni_view_clip(lamp, v, &t0, &t1))
+        return;
+    tyni_walk_steps(isa, lamp, medium, v, t0, t1, steps, light);
+    colour_in(lamp, medium, v, light);
 }

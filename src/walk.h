@@ -15,11 +15,12 @@ void tyni_walk_ray(const tyni_lamp *lamp, const tyni_integral *integral, const t
 
 /* ED10's march: `steps` equal steps inside the light's frustum, the shadow map sampled in the middle of each. All three
  * channels. */
-void tyni_walk_steps(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1, int32_t steps,
-                     float light[3]);
+void tyni_walk_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1,
+                     int32_t steps, float light[3]);
 
-/* L_scat of a ray of length s by a ray of its own: all channels, colour and phase function included. steps 0: exact. */
-void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, int32_t steps,
-                     float light[3]);
+/* L_scat of a ray of length s by a ray of its own: all channels, colour and phase function included. */
+void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, float light[3]);
+void tyni_walk_pixel_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s,
+                           int32_t steps, float light[3]);
 
 #endif

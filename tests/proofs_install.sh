@@ -46,9 +46,13 @@ for try in gcc clang; do
         skip "no $try for the single file"
     fi
 done
+which=gcc
+case $($CC --version 2>/dev/null | head -n 1) in *[cC]lang*) which=clang ;; esac
+[ -s "$work/single/$which.o" ] || which=tyndall
+[ $which != tyndall ] || quiet 'the single file compiles' sh -c "cd '$work/single' && $CC $strict $CFLAGS -c tyndall.c"
 # shellcheck disable=SC2086
 if quiet "the README's program compiles with the two single files" sh -c \
-    "cd '$work/single' && $CC $strict $CFLAGS -o program program.c tyndall.c -lm"; then
+    "cd '$work/single' && $CC $strict $CFLAGS -o program program.c $which.o -lm"; then
     quiet "the README's program runs with the two single files" sh -c "cd '$work/single' && ./program >out"
     for file in "$work"/installed/*; do
         [ "${file##*/}" = program ] && continue
