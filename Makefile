@@ -14,7 +14,7 @@ DESTDIR ?=
 # No contraction: a fused multiply-add rounds once where others round twice, and the pictures must be the same everywhere.
 WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 FLAGS = -std=c99 $(WARNINGS) -ffp-contract=off -Iinclude -Isrc $(CFLAGS)
-POSIX = -D_POSIX_C_SOURCE=200809L -pthread -Iports/posix
+POSIX = -D_POSIX_C_SOURCE=200809L -pthread -I. -Iports/posix
 VERSION := $(shell sed -n 's/^.define TYN_VERSION "\(.*\)"/\1/p' include/tyndall.h)
 
 LIB_SRC := $(wildcard src/*.c src/*/*.c)

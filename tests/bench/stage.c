@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 #include <time.h>
 
+#include "lanes/lanes.h"
 #include "showcase.h"
 
 void bench_die(const char *what)
@@ -66,6 +67,8 @@ void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int
     s->width = width;
     s->height = height;
     s->shadow_size = shadow_size;
+    for (s->isa = TYN_ISA_WASM; !(tyn_isa_available() & s->isa); s->isa /= 2)
+        ;
     scene_init(&s->scene);
     if (showcase_scene(name, &s->scene))
         bench_die("no such scene");
@@ -134,17 +137,19 @@ void stage_tear_down(stage *s)
     scene_free(&s->scene);
 }
 
+#define TYNI_KERNEL "tests/bench/floor_kernel.h"
+#include "lanes/each.h"
+
 /* Rows of the floor as jobs, so that it can be had with threads too. */
 static void floor_job(void *argument, int32_t index, int32_t worker)
 {
     const stage *s = argument;
     size_t at = (size_t)index * 8 * (size_t)s->width, end = at + 8 * (size_t)s->width;
-    const uint32_t *from = (const uint32_t *)(const void *)s->colour8;
-    uint32_t *to = (uint32_t *)(void *)s->target;
     (void)worker;
     end = end < s->pixels ? end : s->pixels;
-    for (; at < end; at++)
-        to[at] = s->depth[at] > 1.0f ? from[at] : ~from[at];
+    TYNI_LANES_CALL(s->isa, bench_floor,
+                    (s->depth + at, (const uint32_t *)(const void *)s->colour8 + at, (uint32_t *)(void *)s->target + at,
+                     (int32_t)(end - at)));
 }
 
 double stage_floor(stage *s, pool *threads)

@@ -10,6 +10,7 @@
 typedef struct stage {
     scene scene;
     int32_t width, height, shadow_size;
+    int32_t isa; /* the best there is */
     size_t pixels;
     tyn_camera camera;
     tyn_light light;
