@@ -12,7 +12,7 @@
 
 int32_t tyni_pass_run(const tyn_context *c)
 {
-    return tyni_mini((c->samples + 15) / 16 * 16, TYNI_PASS_RUN);
+    return tyni_mini(((c->samples + 1) / 2 + 15) / 16 * 16, TYNI_PASS_RUN);
 }
 
 size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)

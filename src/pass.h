@@ -16,7 +16,8 @@
 
 #include "base.h"
 
-/* Pixels of a row that go through their stages together: at most this, nor more than a line has samples. A multiple of 16. */
+/* Pixels of a row that go through their stages together: at most this, nor more than half of a line's samples. A multiple of
+ * 16. */
 #define TYNI_PASS_RUN 256
 #define TYNI_PASS_PLANES 11
 

@@ -12,7 +12,7 @@
 /* ---- where a ray goes into the light and out of it ------------------------------------------------------------------ */
 
 #define WORDS 16 /* of visibility at a time */
-#define EDGES 64 /* at a time: more than a word can have */
+#define EDGES 48 /* at a time: more than a word can have */
 
 /* A ray in one piece of the row, and how far the search has come. */
 typedef struct crossing {

@@ -37,7 +37,7 @@ int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *integral, con
 /* ---- many rays of a white sun at once ---- */
 
 #define TYNI_RAY_BUNDLE 16 /* rays, a whole vector of the widest ISA */
-#define TYNI_RAY_EDGES 128 /* places where rays go into or out of the light, that are waiting for their integrals */
+#define TYNI_RAY_EDGES 64  /* places where rays go into or out of the light, that are waiting for their integrals */
 
 /* Rays from 0 to `to` along d; all arrays are per ray. */
 typedef struct tyni_bundle {

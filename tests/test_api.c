@@ -312,6 +312,8 @@ static void test_preset(void)
     CHECK(memory_of(&config) <= 10u << 20);
     CHECK(tyn_config_preset(&config, TYN_PRESET_HANDHELD, 320, 240) == TYN_OK);
     CHECK(memory_of(&config) <= 64u << 10);
+    CHECK(tyn_config_preset(&config, TYN_PRESET_HANDHELD, 160, 120) == TYN_OK);
+    CHECK(memory_of(&config) <= 24u << 10);
 }
 
 /* Every field out of its range, below and above. */

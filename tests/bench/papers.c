@@ -57,7 +57,7 @@ static void equal_quality(stage *s, const gap *goal, pool *threads, int repeats)
     static const struct {
         int32_t slices, divisor;
         float tolerance;
-    } ladder[] = {{128, 4, 0.1f},  {192, 2, 0.05f},  {256, 2, 0.03f},  {384, 2, 0.02f},
+    } ladder[] = {{96, 1, 0.1f},   {128, 1, 0.05f},  {192, 1, 0.05f},  {256, 1, 0.03f},  {384, 1, 0.02f},
                   {512, 1, 0.02f}, {768, 1, 0.015f}, {1024, 1, 0.01f}, {2048, 1, 0.005f}};
     const int count = sizeof ladder / sizeof *ladder;
     for (int i = 0; i < count; i++) {
