@@ -14,7 +14,7 @@ DESTDIR ?=
 # No contraction: a fused multiply-add rounds once where others round twice, and the pictures must be the same everywhere.
 WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 FLAGS = -std=c99 $(WARNINGS) -ffp-contract=off -Iinclude -Isrc $(CFLAGS)
-POSIX = -D_POSIX_C_SOURCE=200809L -pthread -I. -Iports/posix
+POSIX = -D_POSIX_C_SOURCE=200809L -pthread -Iports/posix
 VERSION := $(shell sed -n 's/^.define TYN_VERSION "\(.*\)"/\1/p' include/tyndall.h)
 
 LIB_SRC := $(wildcard src/*.c src/*/*.c)
@@ -75,11 +75,11 @@ $(B)/tyndall: $(call OBJ,$(PORT_SRC)) $(B)/libtyndall.a
 $(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
-# One program each, on what stage.c has.
-$(B)/bench: $(call OBJ,tests/bench/bench.c tests/bench/stage.c) $(B)/libport.a $(B)/libtyndall.a
+# One program each.
+$(B)/bench: $(call OBJ,tests/bench/bench.c) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
-$(B)/bench-papers: $(call OBJ,tests/bench/papers.c tests/bench/stage.c) $(B)/libport.a $(B)/libtyndall.a
+$(B)/bench-papers: $(call OBJ,tests/bench/papers.c) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
 $(B)/bench-raster: tests/bench/raster.c tests/bench/llvmpipe.c tests/bench/raster.h $(B)/libport.a $(B)/libtyndall.a

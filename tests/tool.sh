@@ -110,6 +110,11 @@ for gather in shear ivb ed10; do
         quiet "--gather $gather --rays $rays: the bytes of words" cmp "o/$gather.words.pfm" "o/$gather.$rays.pfm"
     done
 done
+expect 'bench' 0 "$tyndall" bench --brief --bench-scene simple-on --size 96x54 --repeats 1 --shadow-size 128 --slices 64
+for value in floor_ms march_500_ms shafts_ms shafts_2_threads_ms stage_row_ms stage_ray_ms stage_unwarp_ms rays_percent psnr_db max_8bit \
+    memory_bytes raster_ms shadow_ms prefiltered_ms prefiltered_mean_l1; do
+    empty "bench --brief has $value" "$(grep -q "^$value [0-9.e+-]*\$" out.txt || cat out.txt)"
+done
 expect 'threads 1' 0 "$tyndall" render good.scene -o o/t1.pfm --threads 1
 expect 'threads 5' 0 "$tyndall" render good.scene -o o/t5.pfm --threads 5
 quiet 'any number of threads gives the same bytes' cmp o/t1.pfm o/t5.pfm

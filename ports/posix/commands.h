@@ -7,6 +7,7 @@ int command_render(int argc, char **argv);
 int command_post(int argc, char **argv);
 int command_compare(int argc, char **argv);
 int command_info(int argc, char **argv);
+int command_bench(int argc, char **argv);
 int command_showcase(int argc, char **argv);
 
 #endif

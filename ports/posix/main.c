@@ -13,6 +13,7 @@ static const char help[] = "usage: tyndall COMMAND ...\n"
                            "  render SCENE -o OUT [options]   render a scene file; see tyndall render --help\n"
                            "  post FRAME -o OUT [options]     add shafts to somebody else's frame; see tyndall post --help\n"
                            "  compare A.pfm B.pfm             relative L1, RMSE, PSNR, largest error of A; B is the truth\n"
+                           "  bench [options]                 time the stages; see tyndall bench --help\n"
                            "  showcase [FOLDER [NAME ...]]    render the built-in scenes as PNGs\n"
                            "  info                            version, instruction sets, memory of each preset\n"
                            "  --help, --version\n"
@@ -45,9 +46,8 @@ static int run(int argc, char **argv)
     if (strcmp(command, "showcase") == 0)
         return command_showcase(argc - 2, argv + 2);
     if (strcmp(command, "bench") == 0)
-        fprintf(stderr, "tyndall: %s: is not in this version\n", command);
-    else
-        fprintf(stderr, "tyndall: '%s': unknown command; see tyndall --help\n", command);
+        return command_bench(argc - 2, argv + 2);
+    fprintf(stderr, "tyndall: '%s': unknown command; see tyndall --help\n", command);
     return 2;
 }
 

@@ -313,6 +313,64 @@ int options_parse(options *o, options_command command, int argc, char **argv)
     return check_names(o);
 }
 
+/* What bench has besides the settings. 0: not one of these; -1: bad. */
+static int take_bench(options *o, const char *name, const char *value)
+{
+    static const setting count_of_repeats = {"--repeats", COUNT, 0, 1, 10000, 0.0f, NULL};
+    if (strcmp(name, "--bench-scene") == 0) {
+        static const char *const scenes[] = {"simple-on", "simple-off", "leafy-on", "leafy-off", NULL};
+        o->bench_scene = value;
+        return is_in(value, scenes) ? 1 : bad(name, value, "is not one of simple-on simple-off leafy-on leafy-off");
+    }
+    if (strcmp(name, "--repeats") == 0)
+        return take_count(&count_of_repeats, value, &o->repeats) == 0 ? 1 : -1;
+    return 0;
+}
+
+int options_parse_bench(options *o, int argc, char **argv)
+{
+    static const char *const valued[] = {"--bench-scene", "--repeats", "--size", "--threads", NULL};
+    static const char *const not_here[] = {"--debug", "--exposure", "--rectify", "--splits", NULL};
+    memset(o, 0, sizeof *o);
+    for (int i = 0; i < argc; i++) {
+        const char *a = argv[i];
+        if (strcmp(a, "--help") == 0) {
+            o->help = 1;
+            return 0;
+        }
+        if (strcmp(a, "--brief") == 0) {
+            o->brief = 1;
+        } else if ((setting_of(a) && !is_in(a, not_here)) || is_in(a, valued)) {
+            int taken;
+            if (i + 1 == argc)
+                return bad(a, NULL, "a value is missing after it");
+            taken = take_bench(o, a, argv[++i]);
+            if (taken < 0 || (!taken && take(o, a, argv[i]) != 0))
+                return -1;
+        } else {
+            return bad("bench", a, "unknown option; see tyndall bench --help");
+        }
+    }
+    return 0;
+}
+
+void options_help_bench(void)
+{
+    printf(
+        "usage: tyndall bench [options]\n"
+        "\n"
+        "Times the post process on a built-in scene: ms, minima over the repeats, and how far the picture is from the exact\n"
+        "march, in the same run.\n"
+        "\n"
+        "  --brief            one \"name value\" a line, nothing else\n"
+        "  --bench-scene S    simple-on, simple-off, leafy-on, leafy-off (default)\n"
+        "  --repeats N        default 15\n"
+        "  --size WxH         default 1920x1080\n"
+        "  --threads N        of shafts_ms; default 1\n"
+        "\n"
+        "and --preset, --method, --rays, --gather, --slices, --samples, --isa ... as tyndall render has them.\n");
+}
+
 static void help_of_render(void)
 {
     printf("usage: tyndall render SCENE -o OUT [options]\n"

@@ -1,6 +1,7 @@
-/* stage.h - what the benchmarks share: a built-in scene drawn once, and frames of it that are timed and compared. */
-#ifndef TYN_BENCH_STAGE_H
-#define TYN_BENCH_STAGE_H
+/* stage.h - what `tyndall bench` and the other benchmarks share: a built-in scene drawn once, and frames of it that are timed
+ * and compared. */
+#ifndef TOOL_STAGE_H
+#define TOOL_STAGE_H
 
 #include "pool.h"
 #include "scene.h"
@@ -10,7 +11,6 @@
 typedef struct stage {
     scene scene;
     int32_t width, height, shadow_size;
-    int32_t isa; /* the best there is */
     size_t pixels;
     tyn_camera camera;
     tyn_light light;

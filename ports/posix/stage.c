@@ -1,5 +1,5 @@
+/* stage.c */
 #define _DEFAULT_SOURCE /* madvise */
-/* stage.c - see stage.h */
 #include "stage.h"
 
 #include <math.h>
@@ -9,7 +9,6 @@
 #include <sys/mman.h>
 #include <time.h>
 
-#include "lanes/lanes.h"
 #include "showcase.h"
 
 void bench_die(const char *what)
@@ -67,8 +66,6 @@ void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int
     s->width = width;
     s->height = height;
     s->shadow_size = shadow_size;
-    for (s->isa = TYN_ISA_WASM; !(tyn_isa_available() & s->isa); s->isa /= 2)
-        ;
     scene_init(&s->scene);
     if (showcase_scene(name, &s->scene))
         bench_die("no such scene");
@@ -137,8 +134,16 @@ void stage_tear_down(stage *s)
     scene_free(&s->scene);
 }
 
-#define TYNI_KERNEL "tests/bench/floor_kernel.h"
-#include "lanes/each.h"
+/* The compiler's vectors at their best, whatever the flags of the build. */
+#if defined(__GNUC__) && !defined(__clang__)
+__attribute__((optimize("O3")))
+#endif
+static void
+floor_rows(const float *restrict depth, const uint32_t *restrict from, uint32_t *restrict to, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        to[i] = depth[i] > 1.0f ? from[i] : ~from[i];
+}
 
 /* Rows of the floor as jobs, so that it can be had with threads too. */
 static void floor_job(void *argument, int32_t index, int32_t worker)
@@ -147,9 +152,7 @@ static void floor_job(void *argument, int32_t index, int32_t worker)
     size_t at = (size_t)index * 8 * (size_t)s->width, end = at + 8 * (size_t)s->width;
     (void)worker;
     end = end < s->pixels ? end : s->pixels;
-    TYNI_LANES_CALL(s->isa, bench_floor,
-                    (s->depth + at, (const uint32_t *)(const void *)s->colour8 + at, (uint32_t *)(void *)s->target + at,
-                     (int32_t)(end - at)));
+    floor_rows(s->depth + at, (const uint32_t *)(const void *)s->colour8 + at, (uint32_t *)(void *)s->target + at, end - at);
 }
 
 double stage_floor(stage *s, pool *threads)
