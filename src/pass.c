@@ -141,6 +141,9 @@ void tyni_pass_visible(const tyni_pass *p, const float light[3], const float nor
 void tyni_pass_clear(const tyni_field *field, int32_t line)
 {
     memset(field->entries + (ptrdiff_t)line * field->pitch, 0, sizeof *field->entries * (size_t)field->pitch);
+    /* also those of lines that nothing is stored in: a weight of 0 takes no infinity or NaN */
+    for (int32_t n = 0; n < 3; n++)
+        field->scales[n][line] = 0.0f;
 }
 
 void tyni_pass_store(const tyni_pass *p, const tyni_field *field, int32_t line, int32_t first, int32_t last,

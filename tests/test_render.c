@@ -210,6 +210,43 @@ static void test_sizes(void)
     }
 }
 
+/* A block full of NaN and one of zeros give the same picture: lines that miss a lamp's cone, and points of a coarse picture
+ * that lie beside the screen. */
+static void test_blocks(void)
+{
+    static const char *const names[] = {"sun ahead", "sun off the bottom", "lamp in view", "lamp off the left", "bulb in view"};
+    enum { W = 43, H = 30, PIXELS = W * H };
+    static float light[3 * PIXELS];
+    TEST("tyn_render: whatever the block held before");
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        rig *r = rig_stock(names[i], W, H, 32);
+        r->light[0].angle *= 0.2f; /* a lamp's beam, narrower than what is between two lines */
+        for (int way = 0; way < 3 * RIG_WAYS; way++) {
+            tyn_config config = rig_way_config(r, &rig_ways[way % RIG_WAYS]);
+            tyn_frame frame = rig_frame(r);
+            int64_t rejected = 0;
+            size_t bytes;
+            uint8_t *block;
+            config.slices = 12; /* far apart */
+            if (way >= RIG_WAYS)
+                config.downscale = way < 2 * RIG_WAYS ? 4 : 8;
+            CHECK(tyn_measure(&config, &bytes) == TYN_OK);
+            block = rig_block(bytes);
+            for (int value = 0; block && value < 256; value += 255) {
+                tyn_context *context;
+                memset(block, value, bytes);
+                CHECK(tyn_init(&context, &config, block, bytes) == TYN_OK && tyn_render(context, &frame) == TYN_OK);
+                if (value)
+                    CHECK(memcmp(light, r->scatter, sizeof light) == 0 && rejected == r->stats.rejected);
+                memcpy(light, r->scatter, sizeof light);
+                rejected = r->stats.rejected;
+            }
+            free(block);
+        }
+        rig_free(r);
+    }
+}
+
 /* A float target encoded by tyn_encode is what tyn_render writes into that format itself. */
 static void test_formats(void)
 {
@@ -516,6 +553,7 @@ void test_render(void)
 {
     test_statuses();
     test_sizes();
+    test_blocks();
     test_formats();
     test_in_place();
     test_optional();
