@@ -119,7 +119,7 @@ static void sum_stats(const tyn_context *c, tyn_stats *stats, int64_t pixels)
     }
     stats->pixels = pixels;
     stats->rays_percent = 100.0f * (float)(stats->rays + stats->rejected + stats->corrected) / (float)pixels;
-    stats->looked_per_ray = stats->looked ? (float)stats->looked / (float)(stats->rays - stats->walks) : 0.0f;
+    stats->looked_per_ray = stats->rays > stats->walks ? (float)stats->looked / (float)(stats->rays - stats->walks) : 0.0f;
     stats->memory = c->bytes;
     stats->total_ns = stats->slice_ns + stats->gather_ns;
 }

@@ -201,6 +201,7 @@ static void test_sizes(void)
                     CHECK(memcmp((char *)depth.image.pixels + y * depth.image.stride, r->depth + y * w, 4 * (size_t)w) == 0);
                 }
                 CHECK(r->stats.pixels == (int64_t)pixels);
+                CHECK(r->stats.looked_per_ray >= 0 && r->stats.looked_per_ray <= (float)r->stats.looked); /* all may be walks */
                 guard_free(&target);
                 guard_free(&scatter);
                 guard_free(&depth);
@@ -396,7 +397,7 @@ static void test_odd_depth(void)
     enum { W = 16, H = 12 };
     const float far_depth = 40;
     rig *r = rig_stock("sun ahead", W, H, 64);
-    static float odd[W * H], same[W * H], first[3 * W * H];
+    static float odd[W * H], same[W * H], tiny[W * H], first[3 * W * H];
     TEST("tyn_render: depths that are none");
     for (int i = 0; i < W * H; i++)
         switch (test_random() % 6) {
@@ -426,6 +427,14 @@ static void test_odd_depth(void)
         CHECK(memcmp(first, r->scatter, sizeof first) == 0);
         for (int i = 0; i < 3 * W * H; i++)
             CHECK(first[i] >= 0.0f && first[i] < 1e6f);
+        /* nor too little to divide by */
+        for (int i = 0; i < W * H; i++)
+            tiny[i] = 1e-40f;
+        frame.depth.pixels = tiny;
+        config.paper = TYN_PAPER_EPIPOLE;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        for (int i = 0; i < 3 * W * H; i++)
+            CHECK(r->scatter[i] >= 0.0f && r->scatter[i] < 1e-30f);
     }
     rig_free(r);
 }
