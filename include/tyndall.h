@@ -502,10 +502,14 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
       TYNI_BYTES(2 * (size_t)(maps) * ((size_t)(shadow_size) + 4) / 32 + 2, 4) +                                               \
       TYNI_BYTES(TYNI_SAMPLES(width, height, samples) + 1, 4) + TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 2)))
 #define TYN_MEMORY_BORDER(slices) (TYNI_BYTES(slices, 16) + TYNI_BYTES(slices, 4))
-#define TYN_MEMORY_DOWNSCALE(width, height, factor, textured)                                                                  \
+#define TYN_MEMORY_DOWNSCALE(width, height, samples, factor, workers, textured)                                                \
     (TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 4) +                                                 \
      3 * TYNI_BYTES(TYNI_POINTS(height, factor) + 16, 4) +                                                                     \
-     ((textured) ? TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 2) : 0))
+     ((textured) ? TYNI_BYTES(TYNI_POINTS(width, factor) * TYNI_POINTS(height, factor), 2) : 0) +                              \
+     (TYNI_POINTS(width, factor) > TYNI_SAMPLES(width, height, samples)                                                        \
+          ? 4 * (size_t)(workers) *                                                                                            \
+                (TYNI_BYTES(TYNI_POINTS(width, factor), 4) - TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4))              \
+          : 0))
 /* More, with TYN_METHOD_HYBRID; and what TYN_METHOD_PREFILTERED takes in all. sets: references (1 with average weights), three
  * times as many with `textured`. */
 #define TYN_MEMORY_HYBRID(bases, columns, sets, workers)                                                                       \

@@ -137,7 +137,7 @@ void tyni_debug_pixel(const tyni_pass *p, int32_t x, int32_t y, float depth, int
         paint_texture(p, x, y, rgb);
     } else if (debug == TYN_DEBUG_BASIS) {
         paint_basis(p, x, y, rgb);
-    } else {
+    } else if (tyni_debug_marks(debug)) { /* charts are drawn over the picture later: their lines hold light, if any are kept */
         paint_mark(debug, mark_at(p, x, y), rgb);
     }
 }

@@ -119,7 +119,7 @@ static void sum_stats(const tyn_context *c, tyn_stats *stats, int64_t pixels)
     }
     stats->pixels = pixels;
     stats->rays_percent = 100.0f * (float)(stats->rays + stats->rejected + stats->corrected) / (float)pixels;
-    stats->looked_per_ray = stats->looked ? (float)stats->looked / (float)(stats->rays - stats->walks) : 0.0f;
+    stats->looked_per_ray = stats->rays > stats->walks ? (float)stats->looked / (float)(stats->rays - stats->walks) : 0.0f;
     stats->memory = c->bytes;
     stats->total_ns = stats->slice_ns + stats->gather_ns;
 }
@@ -184,10 +184,10 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     const tyn_config *g = &c->config;
     int32_t longer = tyni_maxi(g->width, g->height);
     tyni_scratch s;
-    c->samples = tyni_mini(g->samples, longer);
+    c->samples = c->points = tyni_mini(g->samples, longer);
     if (g->downscale > 1 &&
         g->method != TYN_METHOD_PREFILTERED) { /* a row of the coarse picture goes through the scratch of a line */
-        c->samples = tyni_maxi(c->samples, tyni_slice_points(longer, g->downscale));
+        c->points = tyni_maxi(c->samples, tyni_slice_points(g->width, g->downscale));
         place_field(&c->grid, arena, (size_t)tyni_slice_points(g->height, g->downscale),
                     (size_t)tyni_slice_points(g->width, g->downscale), g->textured);
     }

@@ -59,7 +59,8 @@ static int gather_shear(const tyni_field *field, const tyni_slices *slices, floa
     int32_t line, sample, p, r;
     if (!sector->count)
         return 0;
-    p = (int32_t)(sector->along_y ? y : x);
+    /* the last points of a coarse picture lie beside the screen */
+    p = tyni_mini((int32_t)(sector->along_y ? y : x), (sector->along_y ? slices->height : slices->width) - 1);
     sample = p / slices->stride;
     r = p - sample * slices->stride;
     line = tyni_mini((int32_t)k, sector->count - 2);

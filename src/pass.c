@@ -18,16 +18,16 @@ int32_t tyni_pass_run(const tyn_context *c)
 size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
-    size_t samples = (size_t)c->samples, words = (size_t)tyni_sample_words(c->samples);
+    size_t samples = (size_t)c->samples, points = (size_t)c->points, words = (size_t)tyni_sample_words(c->samples);
     size_t steps = tyni_row_room(c->config.shadow_size, c->config.maps), columns = 2 * steps;
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
     memset(s, 0, sizeof *s);
     s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
     s->threshold = tyni_arena_take(&arena, columns, sizeof *s->threshold);
     s->split = tyni_arena_take(&arena, steps, sizeof *s->split);
-    s->depth = tyni_arena_take(&arena, samples, sizeof *s->depth);
+    s->depth = tyni_arena_take(&arena, points, sizeof *s->depth);
     for (int32_t i = 0; i < 3; i++)
-        s->value[i] = tyni_arena_take(&arena, samples, sizeof *s->value[i]);
+        s->value[i] = tyni_arena_take(&arena, points, sizeof *s->value[i]);
     for (int32_t i = 0; i < TYNI_PASS_PLANES; i++)
         s->plane[i] = tyni_arena_take(&arena, (size_t)tyni_pass_run(c), sizeof *s->plane[i]);
     s->bundle = tyni_arena_take(&arena, 1, TYN_BUNDLE_BYTES);
@@ -147,6 +147,9 @@ void tyni_pass_visible(const tyni_pass *p, const float light[3], const float nor
 void tyni_pass_clear(const tyni_field *field, int32_t line)
 {
     memset(field->entries + (ptrdiff_t)line * field->pitch, 0, sizeof *field->entries * (size_t)field->pitch);
+    /* also those of lines that nothing is stored in: a weight of 0 takes no infinity or NaN */
+    for (int32_t n = 0; n < 3; n++)
+        field->scales[n][line] = 0.0f;
 }
 
 void tyni_pass_store(const tyni_pass *p, const tyni_field *field, int32_t line, int32_t first, int32_t last,

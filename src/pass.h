@@ -26,8 +26,8 @@ typedef struct tyni_scratch {
     tyni_row *row;
     uint16_t *threshold;             /* 2 * tyni_row_room */
     float *split;                    /* tyni_row_room */
-    float *depth;                    /* samples */
-    float *value[3];                 /* samples: visibility */
+    float *depth;                    /* points */
+    float *value[3];                 /* points: visibility */
     float *plane[TYNI_PASS_PLANES];  /* tyni_pass_run each, for pixels */
     tyni_bundle *bundle;             /* rays side by side */
     uint32_t *breaks, *rays, *fresh; /* bits */
@@ -61,6 +61,7 @@ struct tyn_context {
     tyn_config config; /* defaults filled in; isa is the one that was picked */
     size_t bytes;
     int32_t samples;  /* room per line */
+    int32_t points;   /* of depths and values in the scratch: samples, or more with downscale */
     tyni_field lines; /* slices * samples; not with TYN_METHOD_PREFILTERED, which has in its place: */
     uint8_t *shelves; /* slices * shelf_bytes, else NULL */
     size_t shelf_bytes;

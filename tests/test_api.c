@@ -258,8 +258,6 @@ static size_t memory_of(const tyn_config *c)
     size_t shadow = (size_t)c->shadow_size, lights = (size_t)c->lights, workers = (size_t)c->workers;
     size_t maps = (size_t)c->maps;
     size_t sum, factor = (size_t)(c->downscale ? c->downscale : 1);
-    if (factor > 1 && samples < TYNI_POINTS(TYNI_LONGER(width, height), factor))
-        samples = TYNI_POINTS(TYNI_LONGER(width, height), factor);
     sum = TYN_MEMORY_FULL(width, height, slices, samples, shadow, lights, workers, maps, c->textured);
     if (c->rays == TYN_RAYS_TREE)
         sum += TYN_MEMORY_TREE(shadow, maps, workers);
@@ -268,7 +266,7 @@ static size_t memory_of(const tyn_config *c)
     if (c->gather != TYN_GATHER_SHEAR)
         sum += TYN_MEMORY_BORDER(slices);
     if (factor > 1)
-        sum += TYN_MEMORY_DOWNSCALE(width, height, factor, c->textured);
+        sum += TYN_MEMORY_DOWNSCALE(width, height, samples, factor, workers, c->textured);
     return sum;
 }
 

@@ -118,6 +118,13 @@ static void test_charts(void)
     CHECK(rig_render(r, &config, &frame) == TYN_OK);
     frame.debug = (tyn_debug)VIEWS;
     CHECK(rig_render(r, &config, &frame) == TYN_E_DISPLAY);
+    frame.debug = TYN_DEBUG_ROW;
+    config.method = TYN_METHOD_PREFILTERED; /* keeps no lines */
+    CHECK(rig_render(r, &config, &frame) == TYN_OK);
+    frame.debug_x = frame.debug_y = 0; /* and a picture of one pixel has no chart */
+    frame.depth.width = frame.depth.height = frame.target.width = frame.target.height = 1;
+    frame.colour.width = frame.colour.height = frame.scatter.width = frame.scatter.height = 1;
+    CHECK(rig_render(r, &config, &frame) == TYN_OK);
     rig_free(r);
 }
 

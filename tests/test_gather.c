@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "entry.h"
+#include "gather.h"
 #include "rig.h"
 #include "stock.h"
 #include "test.h"
@@ -235,9 +237,42 @@ static void test_budget(int say)
     CHECK(grid > 1.5 * slices);
 }
 
+/* Points of a coarse picture lie up to a step beside the screen: they take the end of their own line, which is bright, and not
+ * the beginning of the next one. */
+static void test_beside(void)
+{
+    enum { SIZE = 24, LINES = 32 };
+    static uint32_t entries[LINES * SIZE];
+    static float scales[LINES];
+    static const float inverse[2] = {1.0f, 1.0f};
+    tyni_gather gather = {TYN_GATHER_SHEAR, TYN_KERNEL_GAUSSIAN, 3};
+    tyni_field field = {entries, NULL, {scales, scales, scales}, SIZE, 0.06f};
+    tyni_slices slices;
+    tyni_lamp lamp;
+    TEST("gather: points beside the screen");
+    for (int32_t i = 0; i < LINES * SIZE; i++)
+        entries[i] = tyni_entry_pack(i % SIZE < SIZE / 2 ? 0.0f : 1.0f, 1.0f, inverse, 0.5f);
+    for (int32_t i = 0; i < LINES; i++)
+        scales[i] = 1.0f;
+    for (int down = 0; down < 2; down++) {
+        memset(&slices, 0, sizeof slices);
+        memset(&lamp, 0, sizeof lamp);
+        lamp.ew = 1.0f;
+        lamp.ex = down ? SIZE / 2 : -900.0f;
+        lamp.ey = down ? -900.0f : SIZE / 2;
+        tyni_slice_layout(&slices, &lamp, SIZE, SIZE, LINES, 1);
+        for (int32_t i = 0; i < 4 * SIZE; i++) {
+            float along = (float)SIZE - 0.5f + (float)(i % 4) * 2.0f, across = (float)(i / 4) + 0.5f, value[3] = {0};
+            CHECK(tyni_gather_lines(&gather, &field, &slices, down ? across : along, down ? along : across, 0.5f, value) &&
+                  value[0] > 0.99f);
+        }
+    }
+}
+
 void test_gather(void)
 {
     int say = getenv("TYN_SAY") != NULL;
+    test_beside();
     TEST("the exact march");
     if (set_up()) {
         test_combinations(say);

@@ -201,11 +201,49 @@ static void test_sizes(void)
                     CHECK(memcmp((char *)depth.image.pixels + y * depth.image.stride, r->depth + y * w, 4 * (size_t)w) == 0);
                 }
                 CHECK(r->stats.pixels == (int64_t)pixels);
+                CHECK(r->stats.looked_per_ray >= 0 && r->stats.looked_per_ray <= (float)r->stats.looked); /* all may be walks */
                 guard_free(&target);
                 guard_free(&scatter);
                 guard_free(&depth);
                 guard_free(&colour);
             }
+        rig_free(r);
+    }
+}
+
+/* A block full of NaN and one of zeros give the same picture: lines that miss a lamp's cone, and points of a coarse picture
+ * that lie beside the screen. */
+static void test_blocks(void)
+{
+    static const char *const names[] = {"sun ahead", "sun off the bottom", "lamp in view", "lamp off the left", "bulb in view"};
+    enum { W = 43, H = 30, PIXELS = W * H };
+    static float light[3 * PIXELS];
+    TEST("tyn_render: whatever the block held before");
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        rig *r = rig_stock(names[i], W, H, 32);
+        r->light[0].angle *= 0.2f; /* a lamp's beam, narrower than what is between two lines */
+        for (int way = 0; way < 3 * RIG_WAYS; way++) {
+            tyn_config config = rig_way_config(r, &rig_ways[way % RIG_WAYS]);
+            tyn_frame frame = rig_frame(r);
+            int64_t rejected = 0;
+            size_t bytes;
+            uint8_t *block;
+            config.slices = 12; /* far apart */
+            if (way >= RIG_WAYS)
+                config.downscale = way < 2 * RIG_WAYS ? 4 : 8;
+            CHECK(tyn_measure(&config, &bytes) == TYN_OK);
+            block = rig_block(bytes);
+            for (int value = 0; block && value < 256; value += 255) {
+                tyn_context *context;
+                memset(block, value, bytes);
+                CHECK(tyn_init(&context, &config, block, bytes) == TYN_OK && tyn_render(context, &frame) == TYN_OK);
+                if (value)
+                    CHECK(memcmp(light, r->scatter, sizeof light) == 0 && rejected == r->stats.rejected);
+                memcpy(light, r->scatter, sizeof light);
+                rejected = r->stats.rejected;
+            }
+            free(block);
+        }
         rig_free(r);
     }
 }
@@ -359,7 +397,7 @@ static void test_odd_depth(void)
     enum { W = 16, H = 12 };
     const float far_depth = 40;
     rig *r = rig_stock("sun ahead", W, H, 64);
-    static float odd[W * H], same[W * H], first[3 * W * H];
+    static float odd[W * H], same[W * H], tiny[W * H], first[3 * W * H];
     TEST("tyn_render: depths that are none");
     for (int i = 0; i < W * H; i++)
         switch (test_random() % 6) {
@@ -389,6 +427,14 @@ static void test_odd_depth(void)
         CHECK(memcmp(first, r->scatter, sizeof first) == 0);
         for (int i = 0; i < 3 * W * H; i++)
             CHECK(first[i] >= 0.0f && first[i] < 1e6f);
+        /* nor too little to divide by */
+        for (int i = 0; i < W * H; i++)
+            tiny[i] = 1e-40f;
+        frame.depth.pixels = tiny;
+        config.paper = TYN_PAPER_EPIPOLE;
+        CHECK(rig_render(r, &config, &frame) == TYN_OK);
+        for (int i = 0; i < 3 * W * H; i++)
+            CHECK(r->scatter[i] >= 0.0f && r->scatter[i] < 1e-30f);
     }
     rig_free(r);
 }
@@ -516,6 +562,7 @@ void test_render(void)
 {
     test_statuses();
     test_sizes();
+    test_blocks();
     test_formats();
     test_in_place();
     test_optional();

@@ -101,7 +101,8 @@ static tyni_pair ray_through(const tyni_raster_view *view, int32_t axis, int32_t
 /* With r = (x / w, y / w, 1) at a pixel, w r lies on the plane where 1 / w = (normal . r) / distance. The value changes by
  * `g` along the plane, so value / w = g . (r - p / w') + p.value / w' with any corner p, and 1 / w' as above. Everything is
  * linear in r. The vertices are those before clipping and snapping: a piece of a triangle has the plane of the whole.
- * Says whether the plane is so nearly seen edge on, somewhere, that cancellation costs more than 4 bits. */
+ * Says whether cancellation costs much: the plane is so nearly seen edge on, somewhere, that 4 bits are lost, or its edges are
+ * so nearly parallel that their product loses 6. */
 int tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex v[3], tyni_raster_plane *plane)
 {
     const tyni_raster_vertex *p = nearest(v);
@@ -124,7 +125,7 @@ int tyni_raster_set_plane(const tyni_raster_view *view, const tyni_raster_vertex
     w = tyni_vec_dot(f.normal, r) * inverse;
     set_values(plane, tyni_vec_dot(g, tyni_vec_mad(r, -w, at)) + p->value * w, view->step[0] * (g.x + rest * f.normal.x),
                view->step[1] * (g.y + rest * f.normal.y));
-    return tyni_absf(distance) < 0.0625f * largest(position(farthest(v)));
+    return tyni_absf(distance) < 0.0625f * largest(position(farthest(v))) || f.square < 0.015625f * largest(f.a) * largest(f.b);
 }
 
 static tyni_pair3 difference(const float *a, const float *b, float unit)
