@@ -52,7 +52,7 @@ check_compilers() {
     else
         skip 'no clang'
     fi
-    variant O0 gcc '-O0 -g'
+    variant O0 gcc '-O0 -g' golden isa lanes raster_isa api render ray sample # the rest takes a quarter of an hour without an optimiser
     variant O3 gcc '-O3 -march=native'
     variant clang-O3 clang '-O3 -march=native' -accuracy -oracle
     variant plain gcc '-O2 -DTYN_PLAIN_C' golden render workers
