@@ -74,6 +74,29 @@ static int32_t side_begin(const tyni_slices *g, int32_t x, int32_t end, float dy
 #define TYNI_KERNEL "pixel_kernel.h"
 #include "lanes/each.h"
 
+/* TYN_METHOD_PREFILTERED: pixels first .. end - 1 from the rows of the slices beside each. */
+static void unwarp_rows(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first, int32_t end)
+{
+    tyni_lookup l;
+    if (sector->count < 2)
+        return; /* no slices at all */
+    l.view = &p->view;
+    l.slices = &p->slices;
+    l.sector = sector;
+    l.shelves = p->context->shelves;
+    l.bytes = p->context->shelf_bytes;
+    l.x = r->x + first;
+    l.y = r->y;
+    l.count = end - first;
+    l.first = first;
+    l.from = r->from + first;
+    l.to = r->to + first;
+    for (int32_t c = 0; c < 3; c++)
+        l.value[c] = r->value[c] + first;
+    l.rejected = r->rejected;
+    tyni_lookup_pixels(&p->fourier, &l);
+}
+
 /* The row's pixels in at most three parts, one for each sector that it crosses. */
 static void unwarp_shear(const tyni_pass *p, const run *r)
 {
@@ -86,7 +109,9 @@ static void unwarp_shear(const tyni_pass *p, const run *r)
         if (!s->count) /* the epipole's own pixel, or a corner lost to rounding: any will do, its samples are weighed */
             for (s = g->sectors; !s->count && s < g->sectors + 3; s++)
                 ;
-        if (next > x)
+        if (next > x && p->method == TYN_METHOD_PREFILTERED)
+            unwarp_rows(p, r, s, x - r->x, next - r->x);
+        else if (next > x)
             TYNI_LANES_CALL(p->context->config.isa, pixel_unwarp, (p, r, s, x - r->x, next - r->x));
         x = next;
     }
@@ -101,25 +126,6 @@ static void unwarp_each(const tyni_pass *p, const run *r)
         if (!(r->to[i] > 0.0f))
             continue;
         if (rays || !visible(p, px, py, r->to[i] / (r->length[i] * p->view.far_depth), value)) {
-            r->rejected[i >> 5] |= 1u << (i & 31);
-            continue;
-        }
-        for (int32_t c = 0; c < 3; c++)
-            r->value[c][i] = value[c];
-    }
-}
-
-/* TYN_METHOD_PREFILTERED: from the rows of the slices beside each pixel. */
-static void unwarp_rows(const tyni_pass *p, const run *r)
-{
-    for (int32_t i = 0; i < r->count; i++) {
-        float px = (float)(r->x + i) + 0.5f, py = (float)r->y + 0.5f, value[3];
-        tyni_sight v;
-        if (!(r->to[i] > 0.0f))
-            continue;
-        tyni_view_sight(&p->view, px, py, &v);
-        if (!tyni_prefilter_pixel(&p->fourier, p->context->shelves, p->context->shelf_bytes, &p->slices, px, py, &v, r->from[i],
-                                  r->to[i], value)) {
             r->rejected[i >> 5] |= 1u << (i & 31);
             continue;
         }
@@ -181,7 +187,7 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
         r->to = r->reach;
     }
     if (p->method == TYN_METHOD_PREFILTERED)
-        unwarp_rows(p, r);
+        unwarp_shear(p, r);
     else if (tyni_pass_sliced(p) && p->slices.layout == TYNI_LAYOUT_SHEAR && !p->grid.rows && p->count < 3)
         unwarp_shear(p, r);
     else

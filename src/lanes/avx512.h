@@ -291,4 +291,17 @@ TYNI_AVX512_OP uint32_t tyni_avx512_above16(const uint16_t *t, uint32_t position
     return _mm512_cmplt_epu16_mask(_mm512_set1_epi16((int16_t)(uint16_t)position), _mm512_loadu_si512(t));
 }
 
+TYNI_AVX512_OP int32_t tyni_avx512_dot8(const int16_t *a, const int8_t *b, int32_t n)
+{
+    __m256i sum = _mm256_setzero_si256();
+    __m128i s;
+    for (int32_t i = 0; i < n; i += 16) {
+        const __m256i w = _mm256_cvtepi8_epi16(_mm_loadu_si128((const __m128i *)(const void *)(b + i)));
+        sum = _mm256_add_epi32(sum, _mm256_madd_epi16(_mm256_loadu_si256((const __m256i *)(const void *)(a + i)), w));
+    }
+    s = _mm_add_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
+    s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
+    return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
+}
+
 #endif

@@ -268,4 +268,12 @@ TYNI_SCALAR_OP uint32_t tyni_scalar_above16(const uint16_t *t, uint32_t position
     return word;
 }
 
+TYNI_SCALAR_OP int32_t tyni_scalar_dot8(const int16_t *a, const int8_t *b, int32_t n)
+{
+    int32_t sum = 0;
+    for (int32_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
 #endif

@@ -315,4 +315,18 @@ TYNI_SSE2_OP uint32_t tyni_sse2_above16(const uint16_t *t, uint32_t position)
     return ~below;
 }
 
+TYNI_SSE2_OP int32_t tyni_sse2_dot8(const int16_t *a, const int8_t *b, int32_t n)
+{
+    __m128i sum = _mm_setzero_si128();
+    for (int32_t i = 0; i < n; i += 16) {
+        const __m128i *v = (const __m128i *)(const void *)(a + i);
+        const __m128i w = _mm_loadu_si128((const __m128i *)(const void *)(b + i));
+        const __m128i low = _mm_srai_epi16(_mm_unpacklo_epi8(w, w), 8), high = _mm_srai_epi16(_mm_unpackhi_epi8(w, w), 8);
+        sum = _mm_add_epi32(sum, _mm_madd_epi16(_mm_loadu_si128(v), low));
+        sum = _mm_add_epi32(sum, _mm_madd_epi16(_mm_loadu_si128(v + 1), high));
+    }
+    sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0x4e));
+    return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, 0xb1)));
+}
+
 #endif
