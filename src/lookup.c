@@ -58,28 +58,18 @@ void tyni_lookup_widen(tyni_fourier_range *r, const tyni_lookup_ray *ray)
     r->count++;
 }
 
-/* The mean over a stored row with 32767 times the sum of its bases by their coefficients. */
-static float row_mean(const uint8_t *row, int32_t sum)
-{
-    int16_t constant;
-    uint16_t share;
-    memcpy(&constant, row, sizeof constant);
-    memcpy(&share, row + 2, sizeof share);
-    return (float)constant * (1.0f / 32767.0f) +
-           (float)share * (1.0f / 65535.0f) * tyni_clampf(0.5f + (float)sum * (0.636619772f / (127.0f * 32767.0f)), 0.0f, 1.0f);
-}
-
-/* A ray's place between the reference rays, 0 .. references - 1. */
-static float between(const tyni_shelf *s, int32_t references, float lean)
+/* How far a ray is on the way from reference ray `slot` to the next. */
+static inline float between(const tyni_shelf *s, int32_t references, float lean, int32_t *slot)
 {
     int32_t i = 0;
     float step;
     while (i < references - 2 && lean >= s->lean[i + 1])
         i++;
+    *slot = i;
     if (references == 1)
         return 0.0f;
     step = s->lean[i + 1] - s->lean[i];
-    return (float)i + (step > 1e-4f * s->lean[i] ? tyni_clampf((lean - s->lean[i]) / step, 0.0f, 1.0f) : 0.0f);
+    return step > 1e-4f * s->lean[i] ? tyni_clampf((lean - s->lean[i]) / step, 0.0f, 1.0f) : 0.0f;
 }
 
 /* The last column holds for a little more: lines next to each other see about the same. */

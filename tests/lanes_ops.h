@@ -273,7 +273,7 @@ static TYNI_V_TARGET uint32_t TYNI_V(test_word)(const uint16_t *t, uint32_t posi
     return v_above16(t, position);
 }
 
-static TYNI_V_TARGET int32_t TYNI_V(test_dot8)(const int16_t *a, const int8_t *b, int32_t n)
+static TYNI_V_TARGET void TYNI_V(test_dots8)(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
 {
-    return v_dot8(a, b, n);
+    v_dots8(a, b, n, out);
 }

@@ -145,20 +145,22 @@ static void test_memory(int32_t isa)
 static void test_dots(int32_t isa)
 {
     int16_t a[128];
-    int8_t b[128];
+    int8_t b[4][128];
+    const int8_t *const rows[4] = {b[0], b[1], b[2], b[3]};
     if (!begin("sums of products", isa))
         return;
     for (int round = 0; round < 200; round++) {
         for (int i = 0; i < 128; i++) {
-            a[i] = (int16_t)any_bits();
-            b[i] = (int8_t)any_bits();
-            if (round < 4) {
-                a[i] = round & 1 ? INT16_MIN : INT16_MAX;
-                b[i] = round & 2 ? INT8_MIN : INT8_MAX;
-            }
+            a[i] = (int16_t)(round >= 4 ? any_bits() : round & 1 ? 0x8000u : 0x7fffu);
+            for (int k = 0; k < 4; k++)
+                b[k][i] = (int8_t)(round >= 4 ? any_bits() : round & 2 ? 0x80u : 0x7fu);
         }
-        for (int32_t n = 0; n <= 128; n += 16)
-            CHECK(TYNI_LANES_CALL(isa, test_dot8, (a, b, n)) == tyni_scalar_dot8(a, b, n));
+        for (int32_t n = 0; n <= 128; n += 16) {
+            int32_t out[2][4];
+            TYNI_LANES_CALL(isa, test_dots8, (a, rows, n, out[0]));
+            tyni_scalar_dots8(a, rows, n, out[1]);
+            CHECK(memcmp(out[0], out[1], sizeof out[0]) == 0);
+        }
     }
 }
 

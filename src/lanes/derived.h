@@ -70,6 +70,10 @@ TYNI_V_INLINE v_int v_load_u16_n(const uint16_t *p, int32_t n)
 TYNI_V_INLINE void v_store_u8_n(uint8_t *p, v_int x, int32_t n)
 {
     uint8_t part[v_n];
+    if (n >= v_n) {
+        v_store_u8(p, x);
+        return;
+    }
     v_store_u8(part, x);
     for (int32_t i = 0; i < n && i < v_n; i++)
         p[i] = part[i];
@@ -77,6 +81,10 @@ TYNI_V_INLINE void v_store_u8_n(uint8_t *p, v_int x, int32_t n)
 TYNI_V_INLINE void v_store_u16_n(uint16_t *p, v_int x, int32_t n)
 {
     uint16_t part[v_n];
+    if (n >= v_n) {
+        v_store_u16(p, x);
+        return;
+    }
     v_store_u16(part, x);
     for (int32_t i = 0; i < n && i < v_n; i++)
         p[i] = part[i];

@@ -59,7 +59,8 @@
  *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
  *     v_hmin(x) v_hmax(x)                no NaN; which zero of two is open
  *     v_isum(x)
- *     v_dot8(a, b, n)                    sum of int16_t a[i] times int8_t b[i], i < n, that must fit 32 bits; n of 16s
+ *     v_dots8(a, b, n, out)              out[k], k < 4: sum of int16_t a[i] times int8_t b[k][i], i < n, that must fit 32 bits;
+ *                                        n of 16s
  */
 #ifndef TYNI_LANES_H
 #define TYNI_LANES_H
@@ -161,7 +162,7 @@
 #define v_store_rgb TYNI_V(store_rgb)
 #define v_load_rgb TYNI_V(load_rgb)
 #define v_above16 TYNI_V(above16)
-#define v_dot8 TYNI_V(dot8)
+#define v_dots8 TYNI_V(dots8)
 #define v_gt TYNI_V(gt)
 #define v_ge TYNI_V(ge)
 #define v_ne TYNI_V(ne)
