@@ -25,15 +25,6 @@ typedef struct run {
     tyn_stats *stats;
 } run;
 
-/* Visibility of the third channel. It falls about exponentially with extinction where the near air is in shadow. */
-static float between(float a, float b, float blend)
-{
-    float least = tyni_minf(a, b);
-    if (least <= 0.0f || tyni_absf(a - b) <= 0.1f * least)
-        return a + (b - a) * blend;
-    return a * tyni_num_exp(blend * tyni_num_log(b / a));
-}
-
 /* Visibility from lines or from the grid; 0: nothing fits. `at`: depth relative to far. */
 static int visible(const tyni_pass *p, float px, float py, float at, float value[3])
 {
@@ -148,33 +139,6 @@ static void clip_rays(const tyni_pass *p, const run *r)
     }
 }
 
-/* The light of a lamp at a point that would be there without shadows, ray by ray. */
-static void shade_local(const tyni_pass *p, const run *r)
-{
-    const tyni_medium *m = &p->medium;
-    for (int32_t i = 0; i < r->count; i++) {
-        float light[3], norm[3];
-        tyni_sight v;
-        if (!(r->to[i] > 0.0f) || tyni_sample_bit(r->rejected, i))
-            continue;
-        for (int32_t c = 0; c < 3; c++)
-            light[c] = r->value[c][i];
-        if (p->count != 3) {
-            float low = light[0], high = light[1];
-            light[m->low] = low;
-            light[m->high] = high;
-            light[m->middle] = between(low, high, m->blend);
-        }
-        tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
-        if (p->method == TYN_METHOD_PREFILTERED)
-            tyni_prefilter_light(&p->fourier, &v, r->from[i], r->to[i], norm);
-        else
-            tyni_integral_norm(m, p->lamp, &v, r->from[i], r->to[i], norm);
-        for (int32_t c = 0; c < 3; c++)
-            r->light[c][i] += light[c] * norm[c] * p->lamp->colour[c];
-    }
-}
-
 static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
 {
     const int32_t isa = p->context->config.isa;
@@ -197,7 +161,7 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
     if (p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
         TYNI_LANES_CALL(isa, pixel_shade, (p, r));
     else
-        shade_local(p, r);
+        TYNI_LANES_CALL(isa, pixel_shade_local, (p, r));
 }
 
 /* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. */

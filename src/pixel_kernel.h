@@ -150,7 +150,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
     }
 }
 
-/* between() */
+/* Visibility of the third channel. It falls about exponentially with extinction where the near air is in shadow. */
 TYNI_V_INLINE v_float TYNI_V(pixel_between)(v_float a, v_float b, float blend)
 {
     const v_float least = v_min(a, b), straight = a + (b - a) * blend;
@@ -209,6 +209,103 @@ static TYNI_V_TARGET void TYNI_V(pixel_shade)(const tyni_pass *p, const run *r)
                 norm = norm - from * v_fog(m->sigma[c] * from);
             v_store(r->light[c] + i,
                     v_load(r->light[c] + i) + v_select(wanted, light[c] * norm * (mix[c] * colour[c]), v_set(0.0f)));
+        }
+    }
+}
+
+typedef struct TYNI_V(pixel_rays) {
+    v_float ox, oy, oz, dx, dy, dz; /* tyni_view_sight */
+    v_float to[3], near_t;          /* from o to the light; where the ray is nearest to it */
+} TYNI_V(pixel_rays);
+
+TYNI_V_INLINE void TYNI_V(pixel_rays_at)(const tyni_view *v, tyni_vec3 light, v_float px, float py, TYNI_V(pixel_rays) * r)
+{
+    const v_float x = (v->origin.x + px * v->dx.x) + py * v->dy.x, y = (v->origin.y + px * v->dx.y) + py * v->dy.y;
+    const v_float z = (v->origin.z + px * v->dx.z) + py * v->dy.z;
+    if (v->orthographic) {
+        r->ox = x;
+        r->oy = y;
+        r->oz = z;
+        r->dx = v_set(v->forward.x);
+        r->dy = v_set(v->forward.y);
+        r->dz = v_set(v->forward.z);
+    } else {
+        const v_float scale = 1.0f / v_sqrt(x * x + y * y + z * z);
+        r->ox = r->oy = r->oz = v_set(0.0f);
+        r->dx = x * scale;
+        r->dy = y * scale;
+        r->dz = z * scale;
+    }
+    r->to[0] = light.x - r->ox;
+    r->to[1] = light.y - r->oy;
+    r->to[2] = light.z - r->oz;
+    r->near_t = r->dx * r->to[0] + r->dy * r->to[1] + r->dz * r->to[2];
+}
+
+/* tyni_integral_norm of rays from t0 to t1, in its steps: what is changed there must be changed here. */
+TYNI_V_INLINE void TYNI_V(pixel_norm)(const tyni_medium *m, const tyni_lamp *lamp, const TYNI_V(pixel_rays) * r, v_float t0,
+                                      v_float t1, v_float norm[3])
+{
+    static const float at[4] = {0.0694318442f, 0.330009478f, 0.669990522f, 0.930568156f};
+    static const float weight[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
+    const v_float from = t0 - r->near_t, hx = r->to[0] + -r->near_t * r->dx, hy = r->to[1] + -r->near_t * r->dy;
+    const v_float hz = r->to[2] + -r->near_t * r->dz, h = v_max(v_sqrt(hx * hx + hy * hy + hz * hz), v_set(lamp->radius));
+    const v_float span = v_atan2(h * (t1 - t0), from * (t1 - r->near_t) + h * h);
+    const v_mask some = v_gt(t1, t0);
+    norm[0] = norm[1] = norm[2] = v_set(0.0f);
+    for (int32_t i = 0; i < 4; i++) {
+        v_float sine, cosine, d, t, x, y, z, r2, far, scale, mix[3];
+        v_sincos(span * at[i], &sine, &cosine);
+        d = h * cosine - from * sine;
+        t = v_clamp(t0 + sine * (from * from + h * h) / d, t0, t1);
+        t = v_select(v_gt(d, v_set(0.0f)), t, t1);
+        x = lamp->position.x - (r->ox + t * r->dx);
+        y = lamp->position.y - (r->oy + t * r->dy);
+        z = lamp->position.z - (r->oz + t * r->dz);
+        r2 = v_max(x * x + y * y + z * z, v_set(lamp->radius * lamp->radius));
+        far = v_sqrt(r2);
+        TYNI_V(pixel_mix)(m, v_clamp((x * r->dx + y * r->dy + z * r->dz) / far, v_set(-1.0f), v_set(1.0f)), mix);
+        d = t - r->near_t;
+        scale = (d * d + h * h) / h;
+        for (int32_t c = 0; c < 3; c++) {
+            const v_float value = mix[c] * (v_exp(-m->sigma[c] * (t + far)) / r2) * scale;
+            norm[c] = v_select(some, norm[c] + span * weight[i] * value, v_set(0.0f));
+        }
+    }
+}
+
+/* The same for the light of a lamp at a point; tyni_prefilter_light where lines hold visibility of that. */
+static TYNI_V_TARGET void TYNI_V(pixel_shade_local)(const tyni_pass *p, const run *r)
+{
+    const tyni_medium *m = &p->medium;
+    for (int32_t i = 0; i < r->count; i += v_n) {
+        const v_float t0 = v_load(r->from + i), t1 = v_load(r->to + i);
+        const v_mask wanted =
+            v_mand(v_first(r->count - i), v_mandnot(v_gt(t1, v_set(0.0f)), TYNI_V(pixel_bits)(r->rejected, i)));
+        v_float norm[3], second[3], light[3], middle = t1;
+        TYNI_V(pixel_rays) rays;
+        if (v_none(wanted))
+            continue;
+        TYNI_V(pixel_rays_at)
+        (&p->view, p->lamp->position, v_to_float(v_iadd(v_iset(r->x + i), v_index())) + 0.5f, (float)r->y + 0.5f, &rays);
+        if (p->method == TYN_METHOD_PREFILTERED) {
+            middle = v_select(v_mand(v_gt(rays.near_t, t0), v_lt(rays.near_t, t1)), rays.near_t, 0.5f * (t0 + t1));
+            TYNI_V(pixel_norm)(m, p->lamp, &rays, middle, t1, second);
+        }
+        TYNI_V(pixel_norm)(m, p->lamp, &rays, t0, middle, norm);
+        for (int32_t c = 0; c < 3; c++)
+            light[c] = v_load(r->value[c] + i);
+        if (p->count != 3) {
+            const v_float low = light[0], high = light[1];
+            light[m->low] = low;
+            light[m->high] = high;
+            light[m->middle] = TYNI_V(pixel_between)(low, high, m->blend);
+        }
+        for (int32_t c = 0; c < 3; c++) {
+            if (p->method == TYN_METHOD_PREFILTERED)
+                norm[c] = norm[c] + second[c];
+            v_store(r->light[c] + i,
+                    v_load(r->light[c] + i) + v_select(wanted, light[c] * norm[c] * p->lamp->colour[c], v_set(0.0f)));
         }
     }
 }
