@@ -38,6 +38,7 @@ typedef struct tyni_lookup {
     const float *from, *to;
     float *value[3];
     uint32_t *rejected;
+    void *scratch; /* of tyni_fourier_scratch's size, for floats */
 } tyni_lookup;
 void tyni_lookup_pixels(const tyni_fourier *f, const tyni_lookup *l);
 

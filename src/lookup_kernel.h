@@ -174,6 +174,8 @@ typedef struct TYNI_V(lookup_taps) {
     int32_t line[v_n];
     /* of the side in hand */
     float z[v_n], y[v_n];
+    TYNI_V(lookup_sets) sets[4];
+    int16_t factors[]; /* 4 times (bases + 16) */
 } TYNI_V(lookup_taps);
 
 /* z and y of lanes `wanted`; returns those whose row knows them. */
@@ -205,8 +207,6 @@ TYNI_V_INLINE uint32_t TYNI_V(lookup_place)(const tyni_fourier *f, const tyni_lo
 TYNI_V_INLINE void TYNI_V(lookup_side)(const tyni_fourier *f, const tyni_lookup *l, TYNI_V(lookup_taps) * t, uint32_t wanted)
 {
     const int sun = f->lamp->kind == TYN_LIGHT_DIRECTIONAL;
-    TYNI_V(lookup_sets) sets[4];
-    int16_t a[4][128 + 16];
     for (uint32_t left = TYNI_V(lookup_place)(f, l, t, wanted); left;) {
         const tyni_shelf *shelf[4];
         int32_t lane[4], count = 0;
@@ -216,16 +216,16 @@ TYNI_V_INLINE void TYNI_V(lookup_side)(const tyni_fourier *f, const tyni_lookup 
             count++;
         }
         for (int32_t j = 0; j < count; j++)
-            TYNI_V(lookup_factors)(f, t->z[lane[j]], a[j]);
+            TYNI_V(lookup_factors)(f, t->z[lane[j]], t->factors + j * (f->bases + 16));
         for (int32_t j = 0; j < count; j++) {
             float k[3];
             for (int32_t c = 0; c < 3; c++)
                 k[c] = sun ? f->medium->sigma[c] * t->lean[lane[j]] : t->lean[lane[j]];
-            TYNI_V(lookup_take)(f, shelf[j], t->y[lane[j]], a[j], k, &sets[j]);
+            TYNI_V(lookup_take)(f, shelf[j], t->y[lane[j]], t->factors + j * (f->bases + 16), k, &t->sets[j]);
         }
         for (int32_t j = 0; j < count; j++) {
             float value[3], weight = t->weight[lane[j]];
-            TYNI_V(lookup_value)(f, shelf[j], &sets[j], value);
+            TYNI_V(lookup_value)(f, shelf[j], &t->sets[j], value);
             for (int32_t c = 0; c < 3; c++)
                 t->sum[c][lane[j]] += weight * value[c];
             t->sum[3][lane[j]] += weight;
@@ -233,8 +233,9 @@ TYNI_V_INLINE void TYNI_V(lookup_side)(const tyni_fourier *f, const tyni_lookup 
     }
 }
 
-static TYNI_V_TARGET void TYNI_V(lookup_pixels)(const tyni_fourier *f, const tyni_lookup *l)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(lookup_pixels)(const tyni_fourier *f, const tyni_lookup *l)
 {
+    TYNI_V(lookup_taps) *t = l->scratch;
     const tyni_slices *g = l->slices;
     const tyni_sector *s = l->sector;
     const float py = (float)l->y + 0.5f, dy = py * g->ew - g->ey, inverse = 1.0f / s->spacing, slant = (s->border - py) / dy;
@@ -242,7 +243,6 @@ static TYNI_V_TARGET void TYNI_V(lookup_pixels)(const tyni_fourier *f, const tyn
     for (int32_t i = 0; i < l->count; i += v_n) {
         const int32_t n = l->count - i;
         v_float px = v_to_float(v_iadd(v_iset(l->x + i), v_index())) + 0.5f, dx = px * g->ew - g->ex;
-        TYNI_V(lookup_taps) t;
         TYNI_V(lookup_rays) r;
         v_float k, part;
         v_mask wanted, coarse;
@@ -255,11 +255,11 @@ static TYNI_V_TARGET void TYNI_V(lookup_pixels)(const tyni_fourier *f, const tyn
         TYNI_V(lookup_sights)(f, l->view, px, py, &r);
         coarse = v_mand(wanted, TYNI_V(lookup_coarse)(f, &r));
         if (sun) {
-            v_store(t.x, r.across * r.t1);
-            v_store(t.lean, 1.0f / v_max(r.across, v_set(1e-4f)));
+            v_store(t->x, r.across * r.t1);
+            v_store(t->lean, 1.0f / v_max(r.across, v_set(1e-4f)));
         } else {
-            v_store(t.x, v_atan2(r.across * r.t1, f->lamp->distance - r.along * r.t1));
-            v_store(t.lean, v_atan2(r.across, r.along));
+            v_store(t->x, v_atan2(r.across * r.t1, f->lamp->distance - r.along * r.t1));
+            v_store(t->lean, v_atan2(r.across, r.along));
         }
         if (s->along_y)
             k = px + dx * slant;
@@ -271,19 +271,19 @@ static TYNI_V_TARGET void TYNI_V(lookup_pixels)(const tyni_fourier *f, const tyn
         at = v_iadd(at, v_iset(s->start));
         if (s->along_y)
             px = v_set(py);
-        v_store(t.p, px);
-        memset(t.sum, 0, sizeof t.sum);
+        v_store(t->p, px);
+        memset(t->sum, 0, sizeof t->sum);
         for (int32_t side = 0; side < 2; side++) {
-            v_istore(t.line, v_iadd(at, v_iset(side)));
+            v_istore(t->line, v_iadd(at, v_iset(side)));
             if (side)
-                v_store(t.weight, part);
+                v_store(t->weight, part);
             else
-                v_store(t.weight, 1.0f - part);
-            TYNI_V(lookup_side)(f, l, &t, v_word(v_mandnot(wanted, coarse)));
+                v_store(t->weight, 1.0f - part);
+            TYNI_V(lookup_side)(f, l, t, v_word(v_mandnot(wanted, coarse)));
         }
-        part = v_load(t.sum[3]);
+        part = v_load(t->sum[3]);
         for (int32_t c = 0; c < 3; c++)
-            v_store_n(l->value[c] + i, v_select(v_gt(part, v_set(0.0f)), v_load(t.sum[c]) / part, v_set(0.0f)), n);
+            v_store_n(l->value[c] + i, v_select(v_gt(part, v_set(0.0f)), v_load(t->sum[c]) / part, v_set(0.0f)), n);
         for (uint32_t bits = v_word(v_mandnot(wanted, v_gt(part, v_set(0.0f)))); bits; bits &= bits - 1) {
             const int32_t j = l->first + i + tyni_ctz32(bits);
             l->rejected[j >> 5] |= 1u << (j & 31);

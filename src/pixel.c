@@ -22,6 +22,7 @@ typedef struct run {
     float *value[3];    /* visibility */
     float *light[3];    /* L_scat so far */
     uint32_t *rejected; /* bits */
+    void *mill;
     tyn_stats *stats;
 } run;
 
@@ -85,6 +86,7 @@ static void unwarp_rows(const tyni_pass *p, const run *r, const tyni_sector *sec
     for (int32_t c = 0; c < 3; c++)
         l.value[c] = r->value[c] + first;
     l.rejected = r->rejected;
+    l.scratch = r->mill;
     tyni_lookup_pixels(&p->fourier, &l);
 }
 
@@ -277,6 +279,7 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
         r.light[c] = s.plane[6 + c];
     }
     r.rejected = s.fresh;
+    r.mill = s.mill;
     r.stats = s.stats;
     /* a run in all rows before the next run: rows below one another read the same lines of memory */
     for (r.x = 0; r.x < p->view.width; r.x += r.count) {
