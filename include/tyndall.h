@@ -464,8 +464,8 @@ typedef struct tyn_config {
     /* TYN_METHOD_PREFILTERED and _HYBRID. A slice takes columns * references * (bases + 4) bytes, three times that with
      * `textured`, and some 200 more. */
     int32_t bases;           /* sines and cosines together, 4 .. 128, a multiple of 4; 0: 32 */
-    int32_t columns;         /* stored ones of a slice, 4 .. 4096; 0: 128 */
-    int32_t references;      /* reference rays of a slice, 1 .. 4; 0: 3. One will do where the light is far off the screen */
+    int32_t columns;         /* stored ones of a slice, 4 .. 4096; 0: 96 */
+    int32_t references;      /* reference rays of a slice, 1 .. 4; 0: 4. One will do where the light is far off the screen */
     tyn_weights weights;     /* TYN_WEIGHTS_AVERAGE has one set of rows, whatever `references` says */
     tyn_reference reference; /* with references 1 */
     int32_t window;          /* not 0: no ringing (Lanczos' factors), at the price of shadows twice as soft */

@@ -72,7 +72,7 @@ static void set_rates(mill *m, const float lean[2])
     int32_t n = f->references;
     s->lean[0] = n > 1 ? a : f->geometric ? a * tyni_num_exp(0.5f * ratio) : bisectrix(f, lean);
     for (int32_t i = 1; i < n; i++)
-        s->lean[i] = i + 1 == n ? b : a * tyni_num_exp(ratio * 0.8f * (float)i / (float)(n - 1));
+        s->lean[i] = i + 1 == n ? b : a * tyni_num_exp(ratio * 0.9f * (float)i / (float)(n - 1));
     s->density = f->average ? 0.0f : a * tyni_num_exp(0.5f * ratio);
 }
 
