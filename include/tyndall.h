@@ -332,16 +332,20 @@ tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, cons
  * camera stays in one row at one depth, so that a rasterizer draws what shafts are computed from with nothing to resample;
  * for a directional light: maps[0] is its `shadow`, maps[1] .. its `more`. They cover all that the camera can see from the
  * depth `from` (> 0; 0: the near end) up to `distance` (0: the far end), one behind the other in equal ratios: the more, the
- * more even their texels. What is nearer is as `outside` says. Casters nearer to the light must be clamped to the near end when
- * a map is rendered (tyn_raster_shadow does). Sizes, if set, give margins. For the medium alone: surfaces want a map without
- * gaps. TYN_E_NULL, TYN_E_CAMERA (also orthographic, and from and distance out of order), TYN_E_LIGHT (kind, direction, sizes;
- * and where tyn_shadow_rectifiable is 0), TYN_E_LIMIT (count). */
+ * more even their texels. What is nearer is looked up in the maps after them, and is as `outside` says if there are none: a
+ * fitted map as the last of `more` closes that gap. Casters nearer to the light must be clamped to the near end when a map is
+ * rendered (tyn_raster_shadow does). Sizes, if set, give margins. For the medium alone: surfaces want a map without gaps.
+ * TYN_E_NULL, TYN_E_CAMERA (also orthographic, and from and distance out of order), TYN_E_LIGHT (kind, direction, sizes; and
+ * where tyn_shadow_rectifiable is 0), TYN_E_LIMIT (count). */
 tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_light *light, const tyn_camera *camera,
                                     float from, float distance);
 
-/* Whether that can be done: the cosine of half the angle that the view takes up as the light sees it. 1: a narrow view across
- * the light. Falls as the epipole comes nearer to the screen, and with it the worth of the maps; below 0.1, and where a view
- * ray is parallel to the light, it is 0: none exist. 0 also for arguments that tyn_shadow_fit_rectified refuses. */
+/* Whether those maps should be taken: a weight. With c the cosine of half the angle that the view takes up as the light sees
+ * it (1: a narrow view across the light; it falls as the epipole comes nearer to the screen, and with it the worth of the
+ * maps), x = (c - 0.2) / 0.2 and clamped to 0 .. 1 the weight is x x (3 - 2 x): 1 from c = 0.4 on, 0 up to 0.2 and where a view
+ * ray is parallel to the light. It changes smoothly with camera and light. Where it is between 0 and 1, give the light twice,
+ * with these maps and its colour times the weight, and with other maps and its colour times the rest: then nothing pops as the
+ * epipole moves. 0 also for arguments that tyn_shadow_fit_rectified refuses. */
 float tyn_shadow_rectifiable(const tyn_light *light, const tyn_camera *camera);
 
 /* ---- display ------------------------------------------------------------------------------------------------------- */
@@ -460,8 +464,8 @@ typedef struct tyn_config {
     /* TYN_METHOD_PREFILTERED and _HYBRID. A slice takes columns * references * (bases + 4) bytes, three times that with
      * `textured`, and some 200 more. */
     int32_t bases;           /* sines and cosines together, 4 .. 128, a multiple of 4; 0: 32 */
-    int32_t columns;         /* stored ones of a slice, 4 .. 4096; 0: 128 */
-    int32_t references;      /* reference rays of a slice, 1 .. 4; 0: 3. One will do where the light is far off the screen */
+    int32_t columns;         /* stored ones of a slice, 4 .. 4096; 0: 96 */
+    int32_t references;      /* reference rays of a slice, 1 .. 4; 0: 4. One will do where the light is far off the screen */
     tyn_weights weights;     /* TYN_WEIGHTS_AVERAGE has one set of rows, whatever `references` says */
     tyn_reference reference; /* with references 1 */
     int32_t window;          /* not 0: no ringing (Lanczos' factors), at the price of shadows twice as soft */

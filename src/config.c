@@ -36,8 +36,8 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->lights = 1;
     config->workers = 1;
     config->bases = 32;
-    config->columns = 128;
-    config->references = 3;
+    config->columns = 96;
+    config->references = 4;
     return TYN_OK;
 }
 

@@ -7,124 +7,10 @@
 
 #define KNOTS TYNI_FOURIER_KNOTS
 #define BINS TYNI_FOURIER_BINS
-#define EVEN 0.25f                  /* see cells */
-#define LENGTH(bases) (4 + (bases)) /* bytes of a set in a column */
+#define EVEN 0.25f /* see tyni_fourier_cells */
 
 #define TYNI_KERNEL "fourier_kernel.h"
 #include "lanes/each.h"
-
-/* ---- rays ---------------------------------------------------------------------------------------------------------- */
-
-void tyni_fourier_sight(const tyni_fourier *f, const tyni_sight *v, float t1, tyni_fourier_ray *ray)
-{
-    const tyni_lamp *lamp = f->lamp;
-    float along = tyni_vec_dot(v->d, lamp->to_light), across;
-    across = tyni_vec_length(tyni_vec_mad(v->d, -along, lamp->to_light));
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
-        float inverse = 1.0f / tyni_maxf(across, 1e-4f); /* nearer to the epipole rays are walked, or there is no map */
-        ray->x = across * t1;
-        for (int32_t c = 0; c < 3; c++)
-            ray->lean[c] = f->medium->sigma[c] * inverse;
-        return;
-    }
-    ray->x = tyni_num_atan2(across * t1, lamp->distance - along * t1);
-    ray->lean[0] = ray->lean[1] = ray->lean[2] = tyni_num_atan2(across, along);
-}
-
-/* Texels that the ray crosses along a map's longer axis. */
-static float texels_crossed(const tyni_map *map, tyni_vec3 a, tyni_vec3 b)
-{
-    float wa = tyni_maxf(tyni_form_at(&map->w, a), 1e-6f), wb = tyni_maxf(tyni_form_at(&map->w, b), 1e-6f);
-    float du = tyni_form_at(&map->u, b) / wb - tyni_form_at(&map->u, a) / wa;
-    float dv = tyni_form_at(&map->v, b) / wb - tyni_form_at(&map->v, a) / wa;
-    return tyni_maxf(tyni_absf(du), tyni_absf(dv));
-}
-
-int tyni_fourier_coarse(const tyni_fourier *f, const tyni_sight *v, float t0, float t1)
-{
-    const tyni_lamp *lamp = f->lamp;
-    float texels = 0.0f, depth = f->medium->sigma[f->medium->high] * (t1 - t0);
-    if (!lamp->map_count || f->no_walks)
-        return 0;
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
-        for (int32_t i = 0; i < lamp->map_count; i++)
-            texels = tyni_maxf(texels, texels_crossed(&lamp->maps[i], tyni_sight_at(v, t0), tyni_sight_at(v, t1)));
-    } else { /* by the angle at the light: whichever faces the ray meets, their texels are of about one size */
-        const tyni_map *map = &lamp->maps[0];
-        float w = tyni_vec_length(map->w.v);
-        tyni_vec3 axis = tyni_vec_normalise(map->w.v), a = tyni_vec_sub(tyni_sight_at(v, t0), lamp->position);
-        tyni_vec3 b = tyni_vec_sub(tyni_sight_at(v, t1), lamp->position);
-        float size = tyni_vec_length(tyni_vec_mad(map->u.v, -tyni_vec_dot(map->u.v, axis), axis));
-        texels = tyni_num_atan2(tyni_vec_length(tyni_vec_cross(a, b)), tyni_vec_dot(a, b)) * size / tyni_maxf(w, 1e-20f);
-    }
-    /* as tyni_ray_coarse */
-    return tyni_maxf(1.0f, depth) > 0.05f * texels;
-}
-
-void tyni_fourier_widen(tyni_fourier_range *r, const tyni_fourier_ray *ray)
-{
-    for (int32_t c = 0; c < 3; c++) {
-        r->lean[0] = r->count + c ? tyni_minf(r->lean[0], ray->lean[c]) : ray->lean[c];
-        r->lean[1] = r->count + c ? tyni_maxf(r->lean[1], ray->lean[c]) : ray->lean[c];
-    }
-    r->x = r->count ? tyni_maxf(r->x, ray->x) : ray->x;
-    r->count++;
-}
-
-/* ---- z ------------------------------------------------------------------------------------------------------------- */
-
-/* Place of a position between the knots, 0 .. KNOTS. */
-static float place(const tyni_shelf *s, float position)
-{
-    int32_t a = 0;
-    float low, high;
-    for (int32_t half = KNOTS / 2; half; half >>= 1)
-        a += (float)s->knot[a + half] <= position ? half : 0;
-    low = (float)s->knot[a];
-    high = (float)s->knot[a + 1];
-    return (float)a + (high > low ? tyni_minf((position - low) / (high - low), 1.0f) : 0.5f);
-}
-
-static float z_of(const tyni_fourier *f, const tyni_shelf *s, float position)
-{
-    return f->margin + (1.0f - 2.0f * f->margin) / (float)KNOTS * place(s, position);
-}
-
-/* Sines and cosines of pi (2 k - 1) z for k = 1 .. count; room for a multiple of 4. Four orders at a time turn by the same
- * angle: short chains, and a compiler can do them side by side. */
-static void waves(float z, int32_t count, float *sine, float *cosine)
-{
-    float s, c, s2, c2, s4, c4, s8, c8;
-    tyni_num_sincos(TYNI_PI * z, &s, &c);
-    s2 = 2.0f * s * c;
-    c2 = 1.0f - 2.0f * s * s;
-    s4 = 2.0f * s2 * c2;
-    c4 = 1.0f - 2.0f * s2 * s2;
-    s8 = 2.0f * s4 * c4;
-    c8 = 1.0f - 2.0f * s4 * s4;
-    sine[0] = s;
-    cosine[0] = c;
-    sine[1] = s * c2 + c * s2;
-    cosine[1] = c * c2 - s * s2;
-    sine[2] = s * c4 + c * s4;
-    cosine[2] = c * c4 - s * s4;
-    sine[3] = sine[1] * c4 + cosine[1] * s4;
-    cosine[3] = cosine[1] * c4 - sine[1] * s4;
-    for (int32_t k = 4; k < count; k += 4)
-        for (int32_t i = k; i < k + 4; i++) {
-            sine[i] = sine[i - 4] * c8 + cosine[i - 4] * s8;
-            cosine[i] = cosine[i - 4] * c8 - sine[i - 4] * s8;
-        }
-}
-
-/* Columns are stored at equal steps of this, 0 at `low` .. 1 at `high`: of transmittance along a middling ray, and for a part
- * of distance, so that the last of them in thick air are not as wide as all others. x from low. */
-static float cells(const tyni_shelf *s, float x)
-{
-    return x * (s->far_share + (s->near_share > 0.0f ? s->near_share * tyni_num_fog(s->density * x) : 0.0f));
-}
-
-/* ---- rows ---------------------------------------------------------------------------------------------------------- */
 
 /* The columns of a slice on their way into a row. */
 typedef struct mill {
@@ -141,7 +27,7 @@ typedef struct mill {
 
 size_t tyni_fourier_bytes(int32_t bases, int32_t columns, int32_t sets)
 {
-    return sizeof(tyni_shelf) + (size_t)columns * (size_t)sets * LENGTH((size_t)bases);
+    return sizeof(tyni_shelf) + (size_t)columns * (size_t)sets * TYNI_FOURIER_LENGTH((size_t)bases);
 }
 
 size_t tyni_fourier_scratch(int32_t bases, int32_t sets)
@@ -186,7 +72,7 @@ static void set_rates(mill *m, const float lean[2])
     int32_t n = f->references;
     s->lean[0] = n > 1 ? a : f->geometric ? a * tyni_num_exp(0.5f * ratio) : bisectrix(f, lean);
     for (int32_t i = 1; i < n; i++)
-        s->lean[i] = i + 1 == n ? b : a * tyni_num_exp(ratio * 0.8f * (float)i / (float)(n - 1));
+        s->lean[i] = i + 1 == n ? b : a * tyni_num_exp(ratio * 0.9f * (float)i / (float)(n - 1));
     s->density = f->average ? 0.0f : a * tyni_num_exp(0.5f * ratio);
 }
 
@@ -221,7 +107,7 @@ static float cell_end(const mill *m)
     if (m->cell + 1 >= m->f->columns)
         return s->high;
     for (int32_t i = 0; i < 4; i++)
-        x += (y - cells(s, x)) / (s->near_share * tyni_num_exp(-s->density * x) + s->far_share);
+        x += (y - tyni_fourier_cells(s, x)) / (s->near_share * tyni_num_exp(-s->density * x) + s->far_share);
     return tyni_clampf(s->low + x, m->from, s->high);
 }
 
@@ -313,17 +199,11 @@ static void add(const mill *m, float a, float b, int32_t kind, const float rgb[3
     }
 }
 
-/* Bytes from one column to the next, which begin after the shelf. */
-static ptrdiff_t pitch(const tyni_fourier *f)
-{
-    return (ptrdiff_t)f->sets * LENGTH(f->bases);
-}
-
 static void store(mill *m)
 {
     const tyni_fourier *f = m->f;
-    uint8_t *out = (uint8_t *)(m->shelf + 1) + m->cell * pitch(f);
-    for (int32_t i = 0; i < f->sets; i++, out += LENGTH(f->bases)) {
+    uint8_t *out = (uint8_t *)(m->shelf + 1) + m->cell * tyni_fourier_pitch(f);
+    for (int32_t i = 0; i < f->sets; i++, out += TYNI_FOURIER_LENGTH(f->bases)) {
         const float *sum = m->sum + (ptrdiff_t)i * f->bases;
         float inverse = 1.0f / (tyni_maxf(m->total[i], 1e-30f) * m->shelf->scale[i % f->channels]);
         float part = m->share[i] > 0.0f ? 127.0f / m->share[i] : 0.0f;
@@ -332,7 +212,7 @@ static void store(mill *m)
         memcpy(out, &constant, sizeof constant);
         memcpy(out + 2, &share, sizeof share);
         for (int32_t k = 0; k < f->bases; k++)
-            out[4 + k] = (uint8_t)(128 + tyni_floori(tyni_clampf(sum[k] * part, -127.0f, 127.0f) + 0.5f));
+            out[4 + k] = (uint8_t)tyni_floori(tyni_clampf(sum[k] * part, -127.0f, 127.0f) + 0.5f);
     }
 }
 
@@ -384,15 +264,6 @@ static void next_cell(mill *m)
     m->steep = fall > 0.6f ? 0 : tyni_clampi((int32_t)(-2.5f * tyni_num_log(tyni_maxf(fall, 1e-6f))), 1, 24);
 }
 
-static void column_waves(const mill *m, float position)
-{
-    float sine[64], cosine[64];
-    int32_t half = m->f->bases / 2;
-    waves(z_of(m->f, m->shelf, position), half, sine, cosine);
-    memcpy(m->wave, sine, sizeof *sine * (size_t)half);
-    memcpy(m->wave + half, cosine, sizeof *cosine * (size_t)half);
-}
-
 static void grind(mill *m, tyni_columns *c)
 {
     const tyni_fourier *f = m->f;
@@ -407,7 +278,7 @@ static void grind(mill *m, tyni_columns *c)
         if (!(to > from))
             continue;
         if (kind == 2)
-            column_waves(m, (float)q - 0.5f);
+            TYNI_LANES_CALL(f->isa, fourier_waves, (tyni_fourier_z(f, m->shelf, (float)q - 0.5f), f->bases / 2, m->wave));
         while (m->cell < f->columns) {
             float end = tyni_minf(to, m->to);
             if (end > from)
@@ -456,103 +327,15 @@ void tyni_fourier_build(const tyni_fourier *f, tyni_shelf *shelf, void *scratch,
     grind(&m, &columns);
 }
 
-/* ---- evaluation ---------------------------------------------------------------------------------------------------- */
-
-/* 32767 a_k(z): the paper's eq. 8. Returns 128 times their sum. */
-static int32_t coefficients(const tyni_fourier *f, float z, int32_t *a)
-{
-    float sine[64], cosine[64];
-    int32_t half = f->bases / 2, sum = 0;
-    waves(z, half, sine, cosine);
-    for (int32_t k = 0; k < half; k++) {
-        float most = (float)f->amplitude[k];
-        a[k] = (int32_t)(most * cosine[k]);
-        a[half + k] = (int32_t)(-most * sine[k]);
-        sum += a[k] + a[half + k];
-    }
-    return 128 * sum;
-}
-
-/* The mean over a stored row with the sum of its bases. */
-static float row_mean(const uint8_t *row, int32_t sum)
-{
-    int16_t constant;
-    uint16_t share;
-    memcpy(&constant, row, sizeof constant);
-    memcpy(&share, row + 2, sizeof share);
-    return (float)constant * (1.0f / 32767.0f) +
-           (float)share * (1.0f / 65535.0f) * tyni_clampf(0.5f + (float)sum * (0.636619772f / (127.0f * 32767.0f)), 0.0f, 1.0f);
-}
-
-/* Means at position z of the sets first .. last - 1 of a stored column and, for the part 1 - at, of the one before it. */
-static void means(const tyni_fourier *f, const uint8_t *high, const uint8_t *low, float at, float z, int32_t first,
-                  int32_t last, float *out)
-{
-    int32_t a[128], dots[2][12], length = LENGTH(f->bases), count = last - first, shift = coefficients(f, z, a);
-    high += (ptrdiff_t)first * length;
-    low += (ptrdiff_t)first * length;
-    TYNI_LANES_CALL(f->isa, fourier_dots, (a, high + 4, count, length, f->bases, dots[0]));
-    if (at < 1.0f)
-        TYNI_LANES_CALL(f->isa, fourier_dots, (a, low + 4, count, length, f->bases, dots[1]));
-    for (int32_t i = 0; i < count; i++) {
-        float b = row_mean(high + (ptrdiff_t)i * length, dots[0][i] - shift);
-        if (at < 1.0f)
-            b += (1.0f - at) * (row_mean(low + (ptrdiff_t)i * length, dots[1][i] - shift) - b);
-        out[first + i] = b;
-    }
-}
-
-/* A ray's place between the reference rays, 0 .. references - 1. */
-static float between(const tyni_shelf *s, int32_t references, float lean)
-{
-    int32_t i = 0;
-    float step;
-    while (i < references - 2 && lean >= s->lean[i + 1])
-        i++;
-    if (references == 1)
-        return 0.0f;
-    step = s->lean[i + 1] - s->lean[i];
-    return (float)i + (step > 1e-4f * s->lean[i] ? tyni_clampf((lean - s->lean[i]) / step, 0.0f, 1.0f) : 0.0f);
-}
-
-int tyni_fourier_value(const tyni_fourier *f, const tyni_shelf *s, float p, const tyni_fourier_ray *ray, float value[3])
-{
-    float y, at = 1.0f, node[3], mean[12];
-    int32_t cell, first = 3, last = 0;
-    const uint8_t *high;
-    /* the last column holds for a little more: lines next to each other see about the same */
-    if (!s->valid || ray->x > s->high + 0.05f * (s->high - s->low))
-        return 0;
-    y = cells(s, tyni_clampf(ray->x, s->low, s->high) - s->low) * (float)f->columns;
-    cell = tyni_clampi((int32_t)y, 0, f->columns - 1);
-    /* between two stored means M the mean over half a cell is no straight line: (y - cell) / y of the sum is new */
-    if (cell > 0 && y > 0.0f)
-        at = tyni_minf((y - (float)cell) * (float)(cell + 1) / y, 1.0f);
-    for (int32_t c = 0; c < 3; c++) {
-        node[c] = between(s, f->references, ray->lean[c]);
-        first = tyni_mini(first, (int32_t)node[c]);
-        last = tyni_maxi(last, tyni_mini((int32_t)node[c] + 1, f->references - 1));
-    }
-    high = (const uint8_t *)(s + 1) + cell * pitch(f);
-    means(f, high, cell > 0 ? high - pitch(f) : high, at,
-          z_of(f, s, tyni_clampf((p - s->p_start) * s->p_scale, 0.0f, 65534.0f)), first * f->channels, (last + 1) * f->channels,
-          mean);
-    for (int32_t c = 0; c < 3; c++) {
-        int32_t n = tyni_clampi((int32_t)node[c], first, tyni_maxi(last - 1, first)), o = f->channels == 3 ? c : 0;
-        float a = mean[n * f->channels + o], b = mean[tyni_mini(n + 1, last) * f->channels + o];
-        value[c] = tyni_maxf(a + (node[c] - (float)n) * (b - a), 0.0f) * s->scale[c];
-    }
-    return 1;
-}
-
 void tyni_fourier_show(const tyni_fourier *f, const tyni_shelf *s, int32_t column, float show[3])
 {
-    const uint8_t *row = (const uint8_t *)(s + 1) + column * pitch(f) + (ptrdiff_t)(f->sets / 2) * LENGTH(f->bases);
+    const uint8_t *row =
+        (const uint8_t *)(s + 1) + column * tyni_fourier_pitch(f) + (ptrdiff_t)(f->sets / 2) * TYNI_FOURIER_LENGTH(f->bases);
     int16_t constant;
     if (!s->valid)
         return;
     memcpy(&constant, row, sizeof constant);
     show[0] = tyni_maxf((float)constant, 0.0f) * (1.0f / 32767.0f);
-    show[1] = (float)row[4] * (1.0f / 255.0f);
-    show[2] = (float)row[4 + f->bases / 2] * (1.0f / 255.0f);
+    show[1] = (float)(row[4] ^ 128) * (1.0f / 255.0f);
+    show[2] = (float)(row[4 + f->bases / 2] ^ 128) * (1.0f / 255.0f);
 }

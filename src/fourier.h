@@ -13,7 +13,8 @@
  *  - Several reference rays. A column's weight e^(-k x) has k = extinction / sin(angle to the light), for each ray and channel
  *    its own: rows for some k between the slice's least and largest are kept, and rays interpolate over k. One (the paper) is
  *    wrong for most rays around an epipole on the screen, which no number of bases mends; and this takes colour in as well.
- *  - Columns are stored at equal steps of transmittance (for a part), not of distance: 128 miss a tenth more than 1024.
+ *  - Columns are stored at equal steps of transmittance (for a part), not of distance: 128 miss a tenth more than 1024. 96 with
+ * four reference rays are better than 128 with three, of the same size, by a third where the sun is low on the screen.
  *  - Rays near the epipole that cross few texels are no part of it: they are walked (tyni_fourier_coarse).
  *
  * What lost: visibility tabulated at the knots of z instead of a basis (no ringing, and M does not count at the pixel, but half
@@ -28,6 +29,7 @@
 
 #include "columns.h"
 #include "medium.h"
+#include "num.h"
 
 #include "base.h"
 
@@ -45,10 +47,11 @@ typedef struct tyni_fourier {
     float margin;          /* z stays this far from the ends of 0 .. 1, where the series wraps */
     int all;               /* lit and dark columns go into the basis too, as the paper has it */
     float far_x;           /* no ray is longer */
+    float map_scale;       /* spot, point: texels of a map per radian at the light */
     int16_t amplitude[64]; /* of the orders, with the window; 32767 is 2 / pi */
 } tyni_fourier;
 
-/* One slice's rows; its columns follow in memory: `columns` times `sets` times (constant, share, bases). */
+/* One slice's rows; its columns follow in memory: `columns` times `sets`. */
 typedef struct tyni_shelf {
     int32_t valid;                        /* 0: no ray of the line is lit from anywhere, or there is no line */
     float p_start, p_scale;               /* position of a ray, as of tyni_row */
@@ -59,24 +62,44 @@ typedef struct tyni_shelf {
     uint16_t knot[TYNI_FOURIER_KNOTS + 2];
 } tyni_shelf;
 
-/* A view ray from the camera to t1. */
-typedef struct tyni_fourier_ray {
-    float x;       /* column where it ends */
-    float lean[3]; /* of the channels: k; or the ray's angle to the way to the light (spot, point) */
-} tyni_fourier_ray;
+/* Bytes of a set in a column: constant (int16_t), share (uint16_t), int8_t of the bases, sines before cosines. */
+#define TYNI_FOURIER_LENGTH(bases) (4 + (bases))
 
-/* Sets `lean` and `x`. */
-void tyni_fourier_sight(const tyni_fourier *f, const tyni_sight *v, float t1, tyni_fourier_ray *ray);
+/* Bytes from one column to the next. The first begins after the shelf. */
+static inline ptrdiff_t tyni_fourier_pitch(const tyni_fourier *f)
+{
+    return (ptrdiff_t)f->sets * TYNI_FOURIER_LENGTH(f->bases);
+}
 
-/* True for a ray near the epipole: columns are too coarse for it, and it leaves so few that a walk is cheap. */
-int tyni_fourier_coarse(const tyni_fourier *f, const tyni_sight *v, float t0, float t1);
+/* Where columns are stored: at equal steps of this, 0 at `low` .. 1 at `high`: of transmittance along a middling ray, and for a
+ * part of distance, so that the last of them in thick air are not as wide as all others. x from low. */
+static inline float tyni_fourier_cells(const tyni_shelf *s, float x)
+{
+    return x * (s->far_share + (s->near_share > 0.0f ? s->near_share * tyni_num_fog(s->density * x) : 0.0f));
+}
 
-/* The least and largest lean and x of a line's rays. */
+/* z of a position between knots a and a + 1. */
+static inline float tyni_fourier_z_between(const tyni_fourier *f, const tyni_shelf *s, int32_t a, float position)
+{
+    float low = (float)s->knot[a], high = (float)s->knot[a + 1], part = 0.5f;
+    if (high > low)
+        part = tyni_minf((position - low) / (high - low), 1.0f);
+    return f->margin + (1.0f - 2.0f * f->margin) / (float)TYNI_FOURIER_KNOTS * ((float)a + part);
+}
+
+static inline float tyni_fourier_z(const tyni_fourier *f, const tyni_shelf *s, float position)
+{
+    int32_t a = 0;
+    for (int32_t half = TYNI_FOURIER_KNOTS / 2; half; half >>= 1)
+        a += (float)s->knot[a + half] <= position ? half : 0;
+    return tyni_fourier_z_between(f, s, a, position);
+}
+
+/* What the rays of a slice are at most and at least: see tyni_lookup_ray. */
 typedef struct tyni_fourier_range {
     float lean[2], x;
     int32_t count;
 } tyni_fourier_range;
-void tyni_fourier_widen(tyni_fourier_range *range, const tyni_fourier_ray *ray);
 
 /* Bytes of a slice, and of a worker's scratch. */
 size_t tyni_fourier_bytes(int32_t bases, int32_t columns, int32_t sets);
@@ -85,10 +108,6 @@ size_t tyni_fourier_scratch(int32_t bases, int32_t sets);
 /* Makes a slice's rows. range->x: beyond it nothing is needed. */
 void tyni_fourier_build(const tyni_fourier *f, tyni_shelf *shelf, void *scratch, const tyni_row *row, const tyni_slice *slice,
                         const tyni_fourier_range *range);
-
-/* Visibility of the ray through p of the slice's line, in three channels. 0: the row knows nothing of it (it ends beyond the
- * last column). */
-int tyni_fourier_value(const tyni_fourier *f, const tyni_shelf *shelf, float p, const tyni_fourier_ray *ray, float value[3]);
 
 /* A stored column as numbers 0 .. 1, of the middle reference ray: part of the light that all rays see; first sine and cosine
  * of the rest. Left alone where there is none. */

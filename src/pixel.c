@@ -22,17 +22,9 @@ typedef struct run {
     float *value[3];    /* visibility */
     float *light[3];    /* L_scat so far */
     uint32_t *rejected; /* bits */
+    void *mill;
     tyn_stats *stats;
 } run;
-
-/* Visibility of the third channel. It falls about exponentially with extinction where the near air is in shadow. */
-static float between(float a, float b, float blend)
-{
-    float least = tyni_minf(a, b);
-    if (least <= 0.0f || tyni_absf(a - b) <= 0.1f * least)
-        return a + (b - a) * blend;
-    return a * tyni_num_exp(blend * tyni_num_log(b / a));
-}
 
 /* Visibility from lines or from the grid; 0: nothing fits. `at`: depth relative to far. */
 static int visible(const tyni_pass *p, float px, float py, float at, float value[3])
@@ -74,6 +66,30 @@ static int32_t side_begin(const tyni_slices *g, int32_t x, int32_t end, float dy
 #define TYNI_KERNEL "pixel_kernel.h"
 #include "lanes/each.h"
 
+/* TYN_METHOD_PREFILTERED: pixels first .. end - 1 from the rows of the slices beside each. */
+static void unwarp_rows(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first, int32_t end)
+{
+    tyni_lookup l;
+    if (sector->count < 2)
+        return; /* no slices at all */
+    l.view = &p->view;
+    l.slices = &p->slices;
+    l.sector = sector;
+    l.shelves = p->context->shelves;
+    l.bytes = p->context->shelf_bytes;
+    l.x = r->x + first;
+    l.y = r->y;
+    l.count = end - first;
+    l.first = first;
+    l.from = r->from + first;
+    l.to = r->to + first;
+    for (int32_t c = 0; c < 3; c++)
+        l.value[c] = r->value[c] + first;
+    l.rejected = r->rejected;
+    l.scratch = r->mill;
+    tyni_lookup_pixels(&p->fourier, &l);
+}
+
 /* The row's pixels in at most three parts, one for each sector that it crosses. */
 static void unwarp_shear(const tyni_pass *p, const run *r)
 {
@@ -86,7 +102,9 @@ static void unwarp_shear(const tyni_pass *p, const run *r)
         if (!s->count) /* the epipole's own pixel, or a corner lost to rounding: any will do, its samples are weighed */
             for (s = g->sectors; !s->count && s < g->sectors + 3; s++)
                 ;
-        if (next > x)
+        if (next > x && p->method == TYN_METHOD_PREFILTERED)
+            unwarp_rows(p, r, s, x - r->x, next - r->x);
+        else if (next > x)
             TYNI_LANES_CALL(p->context->config.isa, pixel_unwarp, (p, r, s, x - r->x, next - r->x));
         x = next;
     }
@@ -109,25 +127,6 @@ static void unwarp_each(const tyni_pass *p, const run *r)
     }
 }
 
-/* TYN_METHOD_PREFILTERED: from the rows of the slices beside each pixel. */
-static void unwarp_rows(const tyni_pass *p, const run *r)
-{
-    for (int32_t i = 0; i < r->count; i++) {
-        float px = (float)(r->x + i) + 0.5f, py = (float)r->y + 0.5f, value[3];
-        tyni_sight v;
-        if (!(r->to[i] > 0.0f))
-            continue;
-        tyni_view_sight(&p->view, px, py, &v);
-        if (!tyni_prefilter_pixel(&p->fourier, p->context->shelves, p->context->shelf_bytes, &p->slices, px, py, &v, r->from[i],
-                                  r->to[i], value)) {
-            r->rejected[i >> 5] |= 1u << (i & 31);
-            continue;
-        }
-        for (int32_t c = 0; c < 3; c++)
-            r->value[c][i] = value[c];
-    }
-}
-
 /* The light's part of each ray, where that is not all of it. */
 static void clip_rays(const tyni_pass *p, const run *r)
 {
@@ -139,33 +138,6 @@ static void clip_rays(const tyni_pass *p, const run *r)
             t0 = t1 = 0.0f;
         r->from[i] = t0;
         r->to[i] = t1;
-    }
-}
-
-/* The light of a lamp at a point that would be there without shadows, ray by ray. */
-static void shade_local(const tyni_pass *p, const run *r)
-{
-    const tyni_medium *m = &p->medium;
-    for (int32_t i = 0; i < r->count; i++) {
-        float light[3], norm[3];
-        tyni_sight v;
-        if (!(r->to[i] > 0.0f) || tyni_sample_bit(r->rejected, i))
-            continue;
-        for (int32_t c = 0; c < 3; c++)
-            light[c] = r->value[c][i];
-        if (p->count != 3) {
-            float low = light[0], high = light[1];
-            light[m->low] = low;
-            light[m->high] = high;
-            light[m->middle] = between(low, high, m->blend);
-        }
-        tyni_view_sight(&p->view, (float)(r->x + i) + 0.5f, (float)r->y + 0.5f, &v);
-        if (p->method == TYN_METHOD_PREFILTERED)
-            tyni_prefilter_light(&p->fourier, &v, r->from[i], r->to[i], norm);
-        else
-            tyni_integral_norm(m, p->lamp, &v, r->from[i], r->to[i], norm);
-        for (int32_t c = 0; c < 3; c++)
-            r->light[c][i] += light[c] * norm[c] * p->lamp->colour[c];
     }
 }
 
@@ -181,7 +153,7 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
         r->to = r->reach;
     }
     if (p->method == TYN_METHOD_PREFILTERED)
-        unwarp_rows(p, r);
+        unwarp_shear(p, r);
     else if (tyni_pass_sliced(p) && p->slices.layout == TYNI_LAYOUT_SHEAR && !p->grid.rows && p->count < 3)
         unwarp_shear(p, r);
     else
@@ -191,7 +163,7 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
     if (p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
         TYNI_LANES_CALL(isa, pixel_shade, (p, r));
     else
-        shade_local(p, r);
+        TYNI_LANES_CALL(isa, pixel_shade_local, (p, r));
 }
 
 /* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. */
@@ -310,6 +282,7 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
         r.light[c] = s.plane[6 + c];
     }
     r.rejected = s.fresh;
+    r.mill = s.mill;
     r.stats = s.stats;
     /* a run in all rows before the next run: rows below one another read the same lines of memory */
     for (r.x = 0; r.x < p->view.width; r.x += r.count) {

@@ -155,7 +155,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
     }
 }
 
-/* between() */
+/* Visibility of the third channel. It falls about exponentially with extinction where the near air is in shadow. */
 TYNI_V_INLINE v_float TYNI_V(pixel_between)(v_float a, v_float b, float blend)
 {
     const v_float least = v_min(a, b), straight = a + (b - a) * blend;
@@ -200,6 +200,122 @@ static TYNI_V_TARGET void TYNI_V(pixel_shade)(const tyni_pass *p, const run *r)
                 norm = norm - from * v_fog(m->sigma[c] * from);
             v_store(r->light[c] + i,
                     v_load(r->light[c] + i) + v_select(wanted, light[c] * norm * (mix[c] * colour[c]), v_set(0.0f)));
+        }
+    }
+}
+
+typedef struct TYNI_V(pixel_rays) {
+    v_float ox, oy, oz, dx, dy, dz; /* tyni_view_sight */
+    v_float to[3], near_t;          /* from o to the light; where the ray is nearest to it */
+} TYNI_V(pixel_rays);
+
+TYNI_V_INLINE void TYNI_V(pixel_rays_at)(const tyni_view *v, tyni_vec3 light, v_float px, float py, TYNI_V(pixel_rays) * r)
+{
+    const v_float x = (v->origin.x + px * v->dx.x) + py * v->dy.x, y = (v->origin.y + px * v->dx.y) + py * v->dy.y;
+    const v_float z = (v->origin.z + px * v->dx.z) + py * v->dy.z;
+    if (v->orthographic) {
+        r->ox = x;
+        r->oy = y;
+        r->oz = z;
+        r->dx = v_set(v->forward.x);
+        r->dy = v_set(v->forward.y);
+        r->dz = v_set(v->forward.z);
+    } else {
+        const v_float scale = 1.0f / v_sqrt(x * x + y * y + z * z);
+        r->ox = r->oy = r->oz = v_set(0.0f);
+        r->dx = x * scale;
+        r->dy = y * scale;
+        r->dz = z * scale;
+    }
+    r->to[0] = light.x - r->ox;
+    r->to[1] = light.y - r->oy;
+    r->to[2] = light.z - r->oz;
+    r->near_t = r->dx * r->to[0] + r->dy * r->to[1] + r->dz * r->to[2];
+}
+
+/* tyni_integral_norm of rays from t0 to t1, in its steps: what is changed there must be changed here. */
+typedef struct TYNI_V(pixel_part) {
+    v_float t0, t1, from, h, span, norm[3];
+} TYNI_V(pixel_part);
+
+/* A point of Gauss and Legendre's. A function: in a loop all its constants would want a place on the stack. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_norm_point)(const tyni_medium *m, const tyni_lamp *lamp,
+                                                                 const TYNI_V(pixel_rays) * r, TYNI_V(pixel_part) * p, float at,
+                                                                 float weight)
+{
+    v_float sine, cosine, d, t, x, y, z, r2, far, scale, mix[3];
+    v_sincos(p->span * at, &sine, &cosine);
+    d = p->h * cosine - p->from * sine;
+    t = v_clamp(p->t0 + sine * (p->from * p->from + p->h * p->h) / d, p->t0, p->t1);
+    t = v_select(v_gt(d, v_set(0.0f)), t, p->t1);
+    x = lamp->position.x - (r->ox + t * r->dx);
+    y = lamp->position.y - (r->oy + t * r->dy);
+    z = lamp->position.z - (r->oz + t * r->dz);
+    r2 = v_max(x * x + y * y + z * z, v_set(lamp->radius * lamp->radius));
+    far = v_sqrt(r2);
+    TYNI_V(medium_mix)(m, v_clamp((x * r->dx + y * r->dy + z * r->dz) / far, v_set(-1.0f), v_set(1.0f)), mix);
+    d = t - r->near_t;
+    scale = (d * d + p->h * p->h) / p->h;
+    for (int32_t c = 0; c < 3; c++) {
+        const v_float value = mix[c] * (v_exp(-m->sigma[c] * (t + far)) / r2) * scale;
+        p->norm[c] = p->norm[c] + p->span * weight * value;
+    }
+}
+
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_norm)(const tyni_medium *m, const tyni_lamp *lamp,
+                                                           const TYNI_V(pixel_rays) * r, TYNI_V(pixel_part) * p)
+{
+    static const float at[4] = {0.0694318442f, 0.330009478f, 0.669990522f, 0.930568156f};
+    static const float weight[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
+    const v_float hx = r->to[0] + -r->near_t * r->dx, hy = r->to[1] + -r->near_t * r->dy, hz = r->to[2] + -r->near_t * r->dz;
+    p->from = p->t0 - r->near_t;
+    p->h = v_max(v_sqrt(hx * hx + hy * hy + hz * hz), v_set(lamp->radius));
+    p->span = v_atan2(p->h * (p->t1 - p->t0), p->from * (p->t1 - r->near_t) + p->h * p->h);
+    p->norm[0] = p->norm[1] = p->norm[2] = v_set(0.0f);
+    for (int32_t i = 0; i < 4; i++)
+        TYNI_V(pixel_norm_point)(m, lamp, r, p, at[i], weight[i]);
+    for (int32_t c = 0; c < 3; c++)
+        p->norm[c] = v_select(v_gt(p->t1, p->t0), p->norm[c], v_set(0.0f));
+}
+
+/* The same for the light of a lamp at a point; tyni_prefilter_light where lines hold visibility of that. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade_local)(const tyni_pass *p, const run *r)
+{
+    const tyni_medium *m = &p->medium;
+    for (int32_t i = 0; i < r->count; i += v_n) {
+        const v_float t0 = v_load(r->from + i), t1 = v_load(r->to + i);
+        const v_mask wanted =
+            v_mand(v_first(r->count - i), v_mandnot(v_gt(t1, v_set(0.0f)), TYNI_V(pixel_bits)(r->rejected, i)));
+        v_float light[3];
+        TYNI_V(pixel_part) all, rest;
+        TYNI_V(pixel_rays) rays;
+        if (v_none(wanted))
+            continue;
+        TYNI_V(pixel_rays_at)
+        (&p->view, p->lamp->position, v_to_float(v_iadd(v_iset(r->x + i), v_index())) + 0.5f, (float)r->y + 0.5f, &rays);
+        all.t0 = t0;
+        all.t1 = t1;
+        if (p->method == TYN_METHOD_PREFILTERED)
+            all.t1 = v_select(v_mand(v_gt(rays.near_t, t0), v_lt(rays.near_t, t1)), rays.near_t, 0.5f * (t0 + t1));
+        TYNI_V(pixel_norm)(m, p->lamp, &rays, &all);
+        if (p->method == TYN_METHOD_PREFILTERED) {
+            rest.t0 = all.t1;
+            rest.t1 = t1;
+            TYNI_V(pixel_norm)(m, p->lamp, &rays, &rest);
+            for (int32_t c = 0; c < 3; c++)
+                all.norm[c] = all.norm[c] + rest.norm[c];
+        }
+        for (int32_t c = 0; c < 3; c++)
+            light[c] = v_load(r->value[c] + i);
+        if (p->count != 3) {
+            const v_float low = light[0], high = light[1];
+            light[m->low] = low;
+            light[m->high] = high;
+            light[m->middle] = TYNI_V(pixel_between)(low, high, m->blend);
+        }
+        for (int32_t c = 0; c < 3; c++) {
+            v_store(r->light[c] + i,
+                    v_load(r->light[c] + i) + v_select(wanted, light[c] * all.norm[c] * p->lamp->colour[c], v_set(0.0f)));
         }
     }
 }

@@ -53,6 +53,11 @@ void tyni_prefilter_begin(tyni_fourier *f, const tyn_config *c, const tyni_lamp 
     f->no_walks = (c->paper & TYN_PAPER_EPIPOLE) != 0;
     f->all = (c->paper & TYN_PAPER_COLUMNS) != 0;
     f->far_x = 2.0f * (lamp->distance + view->far_depth);
+    if (lamp->kind != TYN_LIGHT_DIRECTIONAL && lamp->map_count) {
+        const tyni_map *map = &lamp->maps[0];
+        tyni_vec3 axis = tyni_vec_normalise(map->w.v), u = tyni_vec_mad(map->u.v, -tyni_vec_dot(map->u.v, axis), axis);
+        f->map_scale = tyni_vec_length(u) / tyni_maxf(tyni_vec_length(map->w.v), 1e-20f);
+    }
     set_amplitudes(f, c->window);
 }
 
@@ -61,13 +66,13 @@ void tyni_prefilter_slice(const tyni_fourier *f, tyni_shelf *shelf, void *scratc
 {
     tyni_fourier_range range = {{0.0f, 0.0f}, 0.0f, 0};
     for (int32_t j = slice->first; j <= slice->last; j++) {
-        tyni_fourier_ray ray;
+        tyni_lookup_ray ray;
         tyni_sight v;
         float t1 = depth[j] * tyni_slice_sight(slice, view, tyni_slice_p(slice, j), &v);
-        if (!(t1 > 0.0f) || tyni_fourier_coarse(f, &v, 0.0f, t1))
+        if (!(t1 > 0.0f) || tyni_lookup_coarse(f, &v, 0.0f, t1))
             continue;
-        tyni_fourier_sight(f, &v, t1, &ray);
-        tyni_fourier_widen(&range, &ray);
+        tyni_lookup_sight(f, &v, t1, &ray);
+        tyni_lookup_widen(&range, &ray);
     }
     tyni_fourier_build(f, shelf, scratch, row, slice, &range);
 }
@@ -94,37 +99,9 @@ void tyni_prefilter_light(const tyni_fourier *f, const tyni_sight *v, float t0, 
 int tyni_prefilter_ray(const tyni_fourier *f, const tyni_shelf *shelf, float p, const tyni_sight *v, float t0, float t1,
                        float value[3])
 {
-    tyni_fourier_ray ray;
-    if (tyni_fourier_coarse(f, v, t0, t1))
+    tyni_lookup_ray ray;
+    if (tyni_lookup_coarse(f, v, t0, t1))
         return 0;
-    tyni_fourier_sight(f, v, t1, &ray);
-    return tyni_fourier_value(f, shelf, p, &ray, value);
-}
-
-int tyni_prefilter_pixel(const tyni_fourier *f, const uint8_t *shelves, size_t bytes, const tyni_slices *slices, float x,
-                         float y, const tyni_sight *v, float t0, float t1, float value[3])
-{
-    tyni_fourier_ray ray;
-    float k, sum = 0.0f, one[3];
-    const tyni_sector *sector = tyni_slice_find(slices, x, y, &k);
-    int32_t line;
-    if (!sector->count || tyni_fourier_coarse(f, v, t0, t1))
-        return 0;
-    tyni_fourier_sight(f, v, t1, &ray);
-    line = tyni_mini((int32_t)k, sector->count - 2);
-    value[0] = value[1] = value[2] = 0.0f;
-    for (int32_t i = 0; i < 2; i++) {
-        float weight = i ? k - (float)line : 1.0f - (k - (float)line);
-        const tyni_shelf *s = (const void *)(shelves + (size_t)(sector->start + line + i) * bytes);
-        if (!(weight > 0.0f) || !tyni_fourier_value(f, s, sector->along_y ? y : x, &ray, one))
-            continue;
-        for (int32_t c = 0; c < 3; c++)
-            value[c] += weight * one[c];
-        sum += weight;
-    }
-    if (!(sum > 0.0f))
-        return 0;
-    for (int32_t c = 0; c < 3; c++)
-        value[c] /= sum;
-    return 1;
+    tyni_lookup_sight(f, v, t1, &ray);
+    return tyni_lookup_value(f, shelf, p, &ray, value);
 }

@@ -3,7 +3,7 @@
 #ifndef TYNI_PREFILTER_H
 #define TYNI_PREFILTER_H
 
-#include "fourier.h"
+#include "lookup.h"
 #include "slice.h"
 #include "view.h"
 
@@ -35,9 +35,5 @@ void tyni_prefilter_light(const tyni_fourier *f, const tyni_sight *v, float t0, 
 /* Visibility of a ray at p of the line of a slice, in all three channels. 0: it wants a ray of its own. */
 int tyni_prefilter_ray(const tyni_fourier *f, const tyni_shelf *shelf, float p, const tyni_sight *v, float t0, float t1,
                        float value[3]);
-
-/* Visibility at a pixel's ray between t0 and t1, from the rows of all slices. 0: it wants a ray of its own. */
-int tyni_prefilter_pixel(const tyni_fourier *f, const uint8_t *shelves, size_t bytes, const tyni_slices *slices, float x,
-                         float y, const tyni_sight *v, float t0, float t1, float value[3]);
 
 #endif

@@ -14,9 +14,10 @@
 #include "num.h"
 #include "vec.h"
 
-/* The wedge must leave this much of a half circle: the cosine of half its angle. Below it texels get too uneven to be of use.
- */
-#define LEAST_OPENING 0.1f
+/* Of the cosine of half the wedge's angle: below the first, texels get too uneven to be of use; from the second on, these maps
+ * are better than a fitted one by enough to be taken alone. */
+#define LEAST_OPENING 0.2f
+#define FULL_OPENING 0.4f
 #define MARGIN 2.0f /* texels at each end of a row's range */
 
 typedef struct wedge {
@@ -53,7 +54,7 @@ static void wedge_set(wedge *w, const tyn_light *light, const tyn_camera *c)
     for (int32_t i = 0; i < 4; i++) {
         float x = tyni_vec_dot(corner[i], w->x), y = tyni_vec_dot(corner[i], w->y), h = tyni_vec_dot(corner[i], w->h);
         w->opening = tyni_minf(w->opening, tyni_vec_dot(flat[i], w->x));
-        if (!(w->opening >= LEAST_OPENING))
+        if (!(w->opening > LEAST_OPENING))
             return;
         w->least = i ? tyni_minf(w->least, x) : x;
         w->most = i ? tyni_maxf(w->most, x) : x;
@@ -102,11 +103,13 @@ static tyn_status check(const tyn_light *light, const tyn_camera *camera)
 
 float tyn_shadow_rectifiable(const tyn_light *light, const tyn_camera *camera)
 {
+    float at;
     wedge w;
     if (check(light, camera) != TYN_OK)
         return 0.0f;
     wedge_set(&w, light, camera);
-    return w.opening >= LEAST_OPENING ? tyni_minf(w.opening, 1.0f) : 0.0f;
+    at = tyni_clampf((w.opening - LEAST_OPENING) / (FULL_OPENING - LEAST_OPENING), 0.0f, 1.0f);
+    return at * at * (3.0f - 2.0f * at);
 }
 
 tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_light *light, const tyn_camera *camera,
@@ -129,7 +132,7 @@ tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_l
         if (maps[i].size < 0 || maps[i].size > TYN_MAX_SHADOW || maps[i].height < 0 || maps[i].height > TYN_MAX_SHADOW)
             return TYN_E_LIGHT;
     wedge_set(&w, light, camera);
-    if (!(w.opening >= LEAST_OPENING))
+    if (!(w.opening > LEAST_OPENING))
         return TYN_E_LIGHT;
     near = from * w.least;
     far = distance * w.most * 1.001f;

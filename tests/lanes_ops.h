@@ -1,6 +1,13 @@
 /* lanes_ops.h - a kernel for tests/test_lanes.c: every operation of src/lanes on its numbers. What one ISA writes must be
  * what scalar writes. */
 
+TYNI_V_INLINE v_float TYNI_V(test_wave)(v_float x, int second)
+{
+    v_float s, c;
+    v_sincos(x, &s, &c);
+    return second ? c : s;
+}
+
 /* Results that hold numbers: any NaN is as good as any other. */
 static TYNI_V_TARGET void TYNI_V(test_numbers)(const float *a, const float *b, const float *small, float *out)
 {
@@ -27,6 +34,12 @@ static TYNI_V_TARGET void TYNI_V(test_numbers)(const float *a, const float *b, c
     EACH(v_log(v_abs(s)))
     EACH(v_fog(v_abs(x)))
     EACH(v_fog(v_abs(s)))
+    EACH(v_atan2(x, y))
+    EACH(v_atan2(s, y))
+    EACH(v_atan2(s, v_set(1.0f)))
+    EACH(TYNI_V(test_wave)(s, 0))
+    EACH(TYNI_V(test_wave)(s, 1))
+    EACH(TYNI_V(test_wave)(s * 20.0f, 1))
 #undef EACH
 }
 
@@ -258,4 +271,9 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
 static TYNI_V_TARGET uint32_t TYNI_V(test_word)(const uint16_t *t, uint32_t position)
 {
     return v_above16(t, position);
+}
+
+static TYNI_V_TARGET void TYNI_V(test_dots8)(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
+{
+    v_dots8(a, b, n, out);
 }

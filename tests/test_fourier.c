@@ -265,7 +265,7 @@ static void test_path(void)
     qsort(gaps, FRAMES, sizeof *gaps, by_size);
     printf("  path of %d frames: error to the march median %.5f, worst %.5f\n", (int)FRAMES, gaps[FRAMES / 2],
            gaps[FRAMES - 1]);
-    CHECK(gaps[FRAMES / 2] < 0.004 && gaps[FRAMES - 1] < 0.012);
+    CHECK(gaps[FRAMES / 2] < 0.004 && gaps[FRAMES - 1] < 0.006);
 }
 
 /* Art: contrast of shafts is linear in what the rows hold. */
@@ -325,96 +325,8 @@ static void test_elsewhere(void)
     rig_free(r);
 }
 
-/* ---- projective rectification --------------------------------------------------------------------------------------- */
-
-static void apply(const float *m, const float p[3], float out[4])
-{
-    for (int i = 0; i < 4; i++)
-        out[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
-}
-
-/* Along every view ray the row and the depth stay, u rises, and the splits follow one another without a gap. */
-static void check_rays(const tyn_shadow *maps, int count, const tyn_camera *c)
-{
-    for (int n = 0; n < 200; n++) {
-        float u = test_random_float(c->left_edge, c->right_edge), v = test_random_float(c->bottom_edge, c->top_edge);
-        float row = -1, deep = -1, last = -1;
-        int map = 0, fine = 1;
-        for (float depth = c->near_depth; depth <= c->far_depth; depth *= 1.3f) {
-            float p[3], out[4], at;
-            int k = 0;
-            for (int i = 0; i < 3; i++)
-                p[i] = c->position[i] + depth * (c->forward[i] + u * c->right[i] + v * c->up[i]);
-            for (; k < count; k++) {
-                apply(maps[k].matrix, p, out);
-                if (out[3] > 0 && out[0] >= -1e-4f * out[3] && out[0] <= 1.0001f * out[3])
-                    break;
-            }
-            fine &= k < count && k >= map && out[1] > 0 && out[1] < out[3] && out[2] > 0 && out[2] < out[3];
-            if (k >= count)
-                break;
-            at = (float)k + out[0] / out[3];
-            fine &= at > last - 1e-4f;
-            if (row >= 0)
-                fine &= fabsf(out[1] / out[3] - row) < 2e-4f && fabsf(out[2] / out[3] - deep) < 2e-4f;
-            row = out[1] / out[3];
-            deep = out[2] / out[3];
-            last = at;
-            map = k;
-        }
-        CHECK(fine);
-    }
-}
-
-static void test_rectified(void)
-{
-    static const char *const off[] = {"sun off the left", "sun off the right", "sun off the top",
-                                      "sun parallel to the picture"};
-    static const char *const on[] = {"sun ahead", "sun in the corner of the view", "sun behind the camera", "lamp above"};
-    tyn_shadow maps[TYN_MAX_MAPS], before[TYN_MAX_MAPS];
-    TEST("projective rectification");
-    for (int n = 0; n < 4; n++) {
-        rig *r = rig_stock(off[n], 64, 48, 64);
-        tyn_light *l = &r->light[0];
-        CHECK(tyn_shadow_rectifiable(l, &r->camera) > 0.1f && tyn_shadow_rectifiable(l, &r->camera) <= 1.0f);
-        for (int count = 1; count <= TYN_MAX_MAPS; count++) {
-            memset(maps, 0, sizeof maps);
-            CHECK(tyn_shadow_fit_rectified(maps, count, l, &r->camera, 0, 0) == TYN_OK);
-            check_rays(maps, count, &r->camera);
-        }
-        memcpy(before, maps, sizeof maps);
-        CHECK(tyn_shadow_fit_rectified(maps, 0, l, &r->camera, 0, 0) == TYN_E_LIMIT);
-        CHECK(tyn_shadow_fit_rectified(maps, TYN_MAX_MAPS + 1, l, &r->camera, 0, 0) == TYN_E_LIMIT);
-        CHECK(tyn_shadow_fit_rectified(NULL, 1, l, &r->camera, 0, 0) == TYN_E_NULL);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, NULL, &r->camera, 0, 0) == TYN_E_NULL);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, NULL, 0, 0) == TYN_E_NULL);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, -1, 0) == TYN_E_CAMERA);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 5, 4) == TYN_E_CAMERA);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 0, -4) == TYN_E_CAMERA);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, (float)NAN, 0) == TYN_E_CAMERA);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 0, (float)NAN) == TYN_E_CAMERA);
-        maps[0].size = -1;
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 0, 0) == TYN_E_LIGHT);
-        maps[0].size = before[0].size;
-        CHECK(memcmp(before, maps, sizeof maps) == 0);
-        r->camera.kind = TYN_CAMERA_ORTHOGRAPHIC;
-        CHECK(tyn_shadow_rectifiable(l, &r->camera) == 0.0f);
-        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 0, 0) == TYN_E_CAMERA);
-        rig_free(r);
-    }
-    for (int n = 0; n < 4; n++) {
-        rig *r = rig_stock(on[n], 64, 48, 64);
-        memset(maps, 0, sizeof maps);
-        CHECK(tyn_shadow_rectifiable(&r->light[0], &r->camera) == 0.0f);
-        CHECK(tyn_shadow_fit_rectified(maps, 4, &r->light[0], &r->camera, 0, 0) == TYN_E_LIGHT);
-        rig_free(r);
-    }
-    CHECK(tyn_shadow_rectifiable(NULL, NULL) == 0.0f);
-}
-
 void test_fourier(void)
 {
-    test_rectified();
     test_columns();
     test_memory();
     test_accuracy_of_all();

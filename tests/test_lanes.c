@@ -9,7 +9,7 @@
 #include "test.h"
 
 #define OPS_COUNT 256 /* numbers that an operation gets */
-#define NUMBERS 16    /* operations of lanes_ops.h */
+#define NUMBERS 22    /* operations of lanes_ops.h */
 #define BITS (37 + 3 * 32)
 
 #define TYNI_KERNEL "../tests/lanes_ops.h" /* from src/ */
@@ -97,6 +97,7 @@ static void test_ops(int32_t isa)
 /* Scalar's own rules, which the others then have. */
 static void test_scalar(void)
 {
+    float wave[2];
     numbers n;
     TEST("lanes: scalar is what the helpers and num.c are");
     for (int round = 0; round < 100; round++) {
@@ -107,6 +108,10 @@ static void test_scalar(void)
             CHECK(same_number(tyni_scalar_log(x), tyni_num_log(x)) && same_number(tyni_scalar_log(s), tyni_num_log(s)));
             CHECK(same_number(tyni_scalar_fog(tyni_absf(x)), tyni_num_fog(tyni_absf(x))));
             CHECK(same_number(tyni_scalar_fog(tyni_absf(s)), tyni_num_fog(tyni_absf(s))));
+            CHECK(same_number(tyni_scalar_atan2(x, y), tyni_num_atan2(x, y)));
+            CHECK(same_number(tyni_scalar_atan2(s, r), tyni_num_atan2(s, r)));
+            tyni_num_sincos(s, &wave[0], &wave[1]);
+            CHECK(same_number(tyni_scalar_test_wave(s, 0), wave[0]) && same_number(tyni_scalar_test_wave(s, 1), wave[1]));
             CHECK(same_number(tyni_scalar_min(x, y), tyni_minf(x, y)) && same_number(tyni_scalar_max(x, y), tyni_maxf(x, y)));
             CHECK(same_number(tyni_scalar_abs(x), tyni_absf(x)));
             CHECK(same_number(tyni_scalar_clamp(x, y, s), tyni_clampf(x, y, s)));
@@ -135,6 +140,28 @@ static void test_memory(int32_t isa)
                 TYNI_LANES_CALL(isa, test_memory, (end, n));
     mprotect(end, page, PROT_READ | PROT_WRITE);
     free(block);
+}
+
+static void test_dots(int32_t isa)
+{
+    int16_t a[128];
+    int8_t b[4][128];
+    const int8_t *const rows[4] = {b[0], b[1], b[2], b[3]};
+    if (!begin("sums of products", isa))
+        return;
+    for (int round = 0; round < 200; round++) {
+        for (int i = 0; i < 128; i++) {
+            a[i] = (int16_t)(round >= 4 ? any_bits() : round & 1 ? 0x8000u : 0x7fffu);
+            for (int k = 0; k < 4; k++)
+                b[k][i] = (int8_t)(round >= 4 ? any_bits() : round & 2 ? 0x80u : 0x7fu);
+        }
+        for (int32_t n = 0; n <= 128; n += 16) {
+            int32_t out[2][4];
+            TYNI_LANES_CALL(isa, test_dots8, (a, rows, n, out[0]));
+            tyni_scalar_dots8(a, rows, n, out[1]);
+            CHECK(memcmp(out[0], out[1], sizeof out[0]) == 0);
+        }
+    }
 }
 
 static void test_words(int32_t isa)
@@ -179,5 +206,6 @@ void test_lanes(void)
         test_ops(isas[i]);
         test_memory(isas[i]);
         test_words(isas[i]);
+        test_dots(isas[i]);
     }
 }

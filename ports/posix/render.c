@@ -18,7 +18,8 @@ typedef struct work {
     size_t pixels;
     tyn_config config;
     tyn_camera camera;
-    tyn_light lights[TYN_MAX_LIGHTS];
+    tyn_light lights[TYN_MAX_LIGHTS]; /* light_count of them: the scene's and those that are there twice */
+    int32_t light_count;
     tyn_raster *raster;
     void *raster_block;
 } work;
@@ -39,6 +40,16 @@ static tyn_image image_of(const work *w, void *pixels, tyn_format format)
     return image;
 }
 
+/* How much of light i comes through rectified maps. Whether there is room does not depend on the weights, or it would pop. */
+static float rectified(const work *w, int32_t i)
+{
+    tyn_light light = shafts_light(&w->s->lights[i]);
+    float weight = 0.0f;
+    if (w->settings->rectify >= RENDER_PROJECTIVE && i < TYN_MAX_LIGHTS - w->s->light_count)
+        weight = tyn_shadow_rectifiable(&light, &w->camera);
+    return w->settings->rectify == RENDER_FORCED && weight > 0.0f ? 1.0f : weight;
+}
+
 static int make_config(work *w)
 {
     const render_settings *r = w->settings;
@@ -48,17 +59,21 @@ static int make_config(work *w)
     if (status != TYN_OK)
         return fail(w, 0, "image", status);
     if (r->rectify >= RENDER_PROJECTIVE)
-        c->maps = r->splits ? r->splits : 4;
+        c->maps = (r->splits ? r->splits : 4) + 1;
     for (int32_t i = 0; i < w->s->light_count; i++) {
-        c->maps = w->s->lights[i].point ? RENDER_FACES : c->maps;
+        c->maps = w->s->lights[i].point && c->maps < RENDER_FACES ? RENDER_FACES : c->maps;
         c->textured = w->s->lights[i].texture ? 1 : c->textured;
     }
-    c->lights = w->s->light_count > 0 ? w->s->light_count : 1;
     c->workers = pool_executor(w->threads)->workers;
     w->pixels = (size_t)width * (size_t)height;
     status = scene_camera_make(w->s, width, height, &w->camera);
     w->out->camera = w->camera;
-    return status == TYN_OK ? 0 : fail(w, w->s->camera.line, "camera", status);
+    if (status != TYN_OK)
+        return fail(w, w->s->camera.line, "camera", status);
+    c->lights = w->s->light_count > 0 ? w->s->light_count : 1;
+    for (int32_t i = 0; i < w->s->light_count; i++)
+        c->lights += rectified(w, i) > 0.0f && rectified(w, i) < 1.0f;
+    return 0;
 }
 
 static int draw_surface(work *w, const char *stage, void *colour, int32_t light_count)
@@ -147,44 +162,58 @@ static int draw_shadow(work *w, int32_t i, const tyn_image *depth)
     return 0;
 }
 
-/* Below this opening projective maps get too uneven, and the fitted map is taken. Both show the same picture there, within what
- * either misses of the truth, so that nothing pops. */
-#define RECTIFY_OPENING 0.3f
-
-/* The maps of `--rectify projective`, in the place of the one that the surfaces had. */
-static int draw_rectified(work *w, int32_t i)
+static int draw_rectified_maps(work *w, int32_t i, render_light *r)
 {
-    tyn_light *l = &w->lights[i];
-    render_light *r = &w->out->lights[i];
     size_t texels = (size_t)w->config.shadow_size * (size_t)w->config.shadow_size;
-    int32_t count = w->config.maps;
-    float opening = tyn_shadow_rectifiable(l, &w->camera);
     tyn_status status;
-    if (!(opening > 0.0f) || (w->settings->rectify == RENDER_PROJECTIVE && opening < RECTIFY_OPENING))
-        return 0;
-    for (int32_t k = 0; k < count; k++) {
+    for (int32_t k = 0; k < r->count; k++) {
         tyn_shadow blank = {0};
         blank.size = w->config.shadow_size;
         r->faces[k] = blank;
     }
-    /* from close to the camera on: what lies before is lit, and that is seen where all around is dark */
-    status = tyn_shadow_fit_rectified(r->faces, count, l, &w->camera, 0.05f * w->camera.near_depth, 0.0f);
-    for (int32_t k = 0; k < count && status == TYN_OK; k++) {
-        if (!r->maps[k])
-            r->maps[k] = malloc(texels * sizeof(float));
+    status = tyn_shadow_fit_rectified(r->faces, r->count, &w->lights[i], &w->camera, 0.0f, 0.0f);
+    for (int32_t k = 0; k < r->count && status == TYN_OK; k++) {
+        r->maps[k] = malloc(texels * sizeof(float));
         if (!r->maps[k])
             return error_memory(w->error);
-        w->out->shadow_bytes += k ? texels * sizeof(float) : 0;
+        w->out->shadow_bytes += texels * sizeof(float);
         status = tyn_raster_shadow(w->raster, &r->faces[k], r->maps[k], w->s->meshes, w->s->mesh_count,
                                    pool_executor(w->threads), NULL, NULL, NULL);
         r->faces[k].depth = r->maps[k];
     }
-    if (status != TYN_OK)
-        return fail(w, w->s->lights[i].line, "rectified shadow map", status);
-    r->count = count;
+    return status == TYN_OK ? 0 : fail(w, w->s->lights[i].line, "rectified shadow map", status);
+}
+
+/* The maps of `--rectify projective`: before the one that the surfaces had, or, for a part of the light, as another light. */
+static int draw_rectified(work *w, int32_t i)
+{
+    tyn_light *l = &w->lights[i];
+    render_light *r = &w->out->lights[i];
+    float weight = rectified(w, i), *map = r->maps[0];
+    tyn_shadow fitted = r->faces[0];
+    if (!(weight > 0.0f))
+        return 0;
+    if (weight < 1.0f) {
+        r = &w->out->lights[w->light_count];
+        l = &w->lights[w->light_count++];
+        *l = w->lights[i];
+        for (int c = 0; c < 3; c++) {
+            w->lights[i].colour[c] *= 1.0f - weight;
+            l->colour[c] *= weight;
+        }
+        map = NULL; /* the other's to free */
+    } else {
+        r->maps[0] = NULL;
+    }
+    r->count = w->settings->splits ? w->settings->splits : 4;
+    r->maps[r->count] = map;
+    if (draw_rectified_maps(w, i, r) != 0)
+        return -1;
+    r->faces[r->count] = fitted;
     l->shadow = r->faces[0];
-    l->more = count > 1 ? &r->faces[1] : NULL;
-    l->more_count = count - 1;
+    l->more = &r->faces[1];
+    l->more_count = r->count;
+    r->count++;
     return 0;
 }
 
@@ -217,8 +246,8 @@ static int draw_shafts(work *w)
     f.camera = w->camera;
     f.depth = image_of(w, w->out->depth, TYN_DEPTH_F32);
     f.colour = image_of(w, w->out->surface, TYN_RGB_F32);
-    f.lights = w->s->light_count ? w->lights : NULL;
-    f.light_count = w->s->light_count;
+    f.lights = w->light_count ? w->lights : NULL;
+    f.light_count = w->light_count;
     f.media = w->s->medium_count ? w->s->media : NULL;
     f.medium_count = w->s->medium_count;
     return shafts_draw(&w->config, &f, w->settings, w->threads, w->out, w->name, w->error);
@@ -244,6 +273,7 @@ int render_scene(const scene *s, const char *name, const render_settings *settin
     memset(&w, 0, sizeof w);
     memset(result, 0, sizeof *result);
     w.s = s;
+    w.light_count = s->light_count;
     w.name = name;
     w.settings = settings;
     w.threads = threads;
@@ -268,7 +298,7 @@ int render_scene(const scene *s, const char *name, const render_settings *settin
 void render_free_maps(render_result *result)
 {
     for (int i = 0; i < TYN_MAX_LIGHTS; i++)
-        for (int k = 0; k < RENDER_FACES; k++) {
+        for (int k = 0; k < RENDER_MAPS; k++) {
             free(result->lights[i].maps[k]);
             result->lights[i].maps[k] = NULL;
             result->lights[i].faces[k].depth = NULL;

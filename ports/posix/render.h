@@ -6,8 +6,9 @@
 #include "pool.h"
 #include "scene.h"
 
-/* Shadow maps of a directional light: fitted; or in projective rectification where that is of use, or wherever it is possible.
- */
+/* Shadow maps of a directional light: fitted; or in projective rectification by tyn_shadow_rectifiable's weight (both maps
+ * where that is between 0 and 1), or wherever it is not 0. The fitted map follows the others, for what is nearer than they
+ * reach. A light that is drawn by both takes up two of TYN_MAX_LIGHTS: the first lights for which there is room can have it. */
 typedef enum render_rectify { RENDER_DEFAULT, RENDER_EPIPOLAR, RENDER_PROJECTIVE, RENDER_FORCED } render_rectify;
 
 /* Zero bytes mean the defaults: the preset's. */
@@ -30,10 +31,11 @@ typedef struct render_times {
 } render_times;
 
 #define RENDER_FACES 6 /* of a point light's cube */
+#define RENDER_MAPS 7  /* rectified and the fitted one */
 
 typedef struct render_light {
-    tyn_shadow faces[RENDER_FACES]; /* count of them; their depth is `maps`, NULL without settings.want_maps */
-    float *maps[RENDER_FACES];
+    tyn_shadow faces[RENDER_MAPS]; /* count of them; their depth is `maps`, NULL without settings.want_maps */
+    float *maps[RENDER_MAPS];
     int32_t count;
 } render_light;
 
@@ -49,7 +51,7 @@ typedef struct render_result {
     render_times times;
     size_t raster_bytes, shadow_bytes; /* memory of the rasterizer, of all shadow maps */
     tyn_camera camera;
-    render_light lights[TYN_MAX_LIGHTS];
+    render_light lights[TYN_MAX_LIGHTS]; /* of the scene; what follows is of lights that are drawn by both kinds of maps */
 } render_result;
 
 /* All of it in float. -1: error set (`name` is the scene's for messages), nothing to free. */

@@ -290,4 +290,24 @@ TYNI_AVX2_OP uint32_t tyni_avx2_above16(const uint16_t *t, uint32_t position)
     return ~(uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xd8));
 }
 
+TYNI_AVX2_OP void tyni_avx2_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
+{
+    __m256i s0 = _mm256_setzero_si256(), s1 = s0, s2 = s0, s3 = s0, low, high;
+    for (int32_t i = 0; i < n; i += 16) {
+        const __m256i v = _mm256_loadu_si256((const __m256i *)(const void *)(a + i));
+        const __m256i w0 = _mm256_cvtepi8_epi16(_mm_loadu_si128((const __m128i *)(const void *)(b[0] + i)));
+        const __m256i w1 = _mm256_cvtepi8_epi16(_mm_loadu_si128((const __m128i *)(const void *)(b[1] + i)));
+        const __m256i w2 = _mm256_cvtepi8_epi16(_mm_loadu_si128((const __m128i *)(const void *)(b[2] + i)));
+        const __m256i w3 = _mm256_cvtepi8_epi16(_mm_loadu_si128((const __m128i *)(const void *)(b[3] + i)));
+        s0 = _mm256_add_epi32(s0, _mm256_madd_epi16(v, w0));
+        s1 = _mm256_add_epi32(s1, _mm256_madd_epi16(v, w1));
+        s2 = _mm256_add_epi32(s2, _mm256_madd_epi16(v, w2));
+        s3 = _mm256_add_epi32(s3, _mm256_madd_epi16(v, w3));
+    }
+    low = _mm256_add_epi32(_mm256_unpacklo_epi32(s0, s1), _mm256_unpackhi_epi32(s0, s1));
+    high = _mm256_add_epi32(_mm256_unpacklo_epi32(s2, s3), _mm256_unpackhi_epi32(s2, s3));
+    low = _mm256_add_epi32(_mm256_unpacklo_epi64(low, high), _mm256_unpackhi_epi64(low, high));
+    _mm_storeu_si128((__m128i *)(void *)out, _mm_add_epi32(_mm256_castsi256_si128(low), _mm256_extracti128_si256(low, 1)));
+}
+
 #endif

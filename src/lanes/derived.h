@@ -70,6 +70,10 @@ TYNI_V_INLINE v_int v_load_u16_n(const uint16_t *p, int32_t n)
 TYNI_V_INLINE void v_store_u8_n(uint8_t *p, v_int x, int32_t n)
 {
     uint8_t part[v_n];
+    if (n >= v_n) {
+        v_store_u8(p, x);
+        return;
+    }
     v_store_u8(part, x);
     for (int32_t i = 0; i < n && i < v_n; i++)
         p[i] = part[i];
@@ -77,6 +81,10 @@ TYNI_V_INLINE void v_store_u8_n(uint8_t *p, v_int x, int32_t n)
 TYNI_V_INLINE void v_store_u16_n(uint16_t *p, v_int x, int32_t n)
 {
     uint16_t part[v_n];
+    if (n >= v_n) {
+        v_store_u16(p, x);
+        return;
+    }
     v_store_u16(part, x);
     for (int32_t i = 0; i < n && i < v_n; i++)
         p[i] = part[i];
@@ -221,4 +229,46 @@ TYNI_V_INLINE v_float v_log(v_float x)
     p = p * q + 1.0f / 3.0f;
     p = 2.0f * s + 2.0f * s * q * p;
     return v_to_float(e) * 0.693145752f + (v_to_float(e) * 1.42860677e-6f + p);
+}
+
+TYNI_V_INLINE void v_sincos(v_float x, v_float *sine, v_float *cosine)
+{
+    const v_int n = v_floori(v_clamp(x, v_set(-8192.0f), v_set(8192.0f)) * 0.636619772f + 0.5f), two = v_iset(2);
+    const v_mask even = v_ieq(v_iand(n, v_iset(1)), v_iset(0));
+    const v_float f = v_to_float(n), r = ((x - f * 1.5703125f) - f * 4.83751297e-4f) - f * 7.54978995e-8f, q = r * r;
+    v_float s = v_set(1.0f / 362880.0f), c = v_set(-1.0f / 3628800.0f), a, b;
+    s = s * q - 1.0f / 5040.0f;
+    s = s * q + 1.0f / 120.0f;
+    s = s * q - 1.0f / 6.0f;
+    s = s * q * r + r;
+    c = c * q + 1.0f / 40320.0f;
+    c = c * q - 1.0f / 720.0f;
+    c = c * q + 1.0f / 24.0f;
+    c = c * q - 0.5f;
+    c = c * q + 1.0f;
+    a = v_select(even, s, c);
+    b = v_select(even, c, s);
+    *sine = v_select(v_ieq(v_iand(n, two), two), -a, a);
+    *cosine = v_select(v_ieq(v_iand(v_iadd(n, v_iset(1)), two), two), -b, b);
+}
+
+TYNI_V_INLINE v_float v_atan2(v_float y, v_float x)
+{
+    const v_float a = v_abs(y), b = v_abs(x), low = v_min(a, b), high = v_max(a, b), zero = v_set(0.0f);
+    const v_mask big = v_gt(low, 0.414213562f * high);
+    const v_float t = v_select(big, high - low, low) / v_select(big, high + low, high), q = t * t;
+    v_float p = v_set(1.0f / 17.0f), angle;
+    p = -p * q + 1.0f / 15.0f;
+    p = -p * q + 1.0f / 13.0f;
+    p = -p * q + 1.0f / 11.0f;
+    p = -p * q + 1.0f / 9.0f;
+    p = -p * q + 1.0f / 7.0f;
+    p = -p * q + 1.0f / 5.0f;
+    p = -p * q + 1.0f / 3.0f;
+    angle = t - t * q * p;
+    angle = v_select(big, v_set(0.25f * TYNI_PI) + v_select(v_lt(low, high), -angle, zero), angle);
+    angle = v_select(v_gt(a, b), 0.5f * TYNI_PI - angle, angle);
+    angle = v_select(v_lt(x, zero), TYNI_PI - angle, angle);
+    angle = v_select(v_lt(y, zero), -angle, angle);
+    return v_select(v_gt(high, zero), angle, zero);
 }

@@ -26,6 +26,7 @@
  *     v_lt v_le v_gt v_ge v_eq v_ne      masks; NaN: all false but v_ne
  *     v_select(m, a, b)                  m ? a : b
  *     v_exp(x) v_fog(x) v_log(x)         the bits of tyni_num_exp, tyni_num_fog, tyni_num_log
+ *     v_sincos(x, &s, &c) v_atan2(y, x)  the bits of tyni_num_sincos, tyni_num_atan2
  * Integers, wrapping:
  *     v_iadd v_isub v_imul v_imin v_imax v_iand v_ior v_ixor v_iandnot(a, b) = a & ~b
  *     v_shl(x, n) v_shr(x, n) v_sar(x, n)      n is 0 .. 31, one for all lanes; sar brings in the sign
@@ -58,6 +59,8 @@
  *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
  *     v_hmin(x) v_hmax(x)                no NaN; which zero of two is open
  *     v_isum(x)
+ *     v_dots8(a, b, n, out)              out[k], k < 4: sum of int16_t a[i] times int8_t b[k][i], i < n, that must fit 32 bits;
+ *                                        n of 16s
  */
 #ifndef TYNI_LANES_H
 #define TYNI_LANES_H
@@ -159,6 +162,7 @@
 #define v_store_rgb TYNI_V(store_rgb)
 #define v_load_rgb TYNI_V(load_rgb)
 #define v_above16 TYNI_V(above16)
+#define v_dots8 TYNI_V(dots8)
 #define v_gt TYNI_V(gt)
 #define v_ge TYNI_V(ge)
 #define v_ne TYNI_V(ne)
@@ -185,6 +189,8 @@
 #define v_exp TYNI_V(exp)
 #define v_fog TYNI_V(fog)
 #define v_log TYNI_V(log)
+#define v_sincos TYNI_V(sincos)
+#define v_atan2 TYNI_V(atan2)
 
 #define TYNI_KERNEL "lanes/derived.h"
 #include "lanes/each.h"

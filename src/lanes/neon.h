@@ -303,4 +303,16 @@ TYNI_NEON_OP uint32_t tyni_neon_above16(const uint16_t *t, uint32_t position)
     return word;
 }
 
+TYNI_NEON_OP void tyni_neon_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
+{
+    for (int32_t k = 0; k < 4; k++) {
+        int32x4_t sum = vdupq_n_s32(0);
+        for (int32_t i = 0; i < n; i += 8) {
+            const int16x8_t v = vld1q_s16(a + i), w = vmovl_s8(vld1_s8(b[k] + i));
+            sum = vmlal_s16(vmlal_s16(sum, vget_low_s16(v), vget_low_s16(w)), vget_high_s16(v), vget_high_s16(w));
+        }
+        out[k] = vaddvq_s32(sum);
+    }
+}
+
 #endif

@@ -268,4 +268,13 @@ TYNI_SCALAR_OP uint32_t tyni_scalar_above16(const uint16_t *t, uint32_t position
     return word;
 }
 
+TYNI_SCALAR_OP void tyni_scalar_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
+{
+    for (int32_t k = 0; k < 4; k++) {
+        out[k] = 0;
+        for (int32_t i = 0; i < n; i++)
+            out[k] += a[i] * b[k][i];
+    }
+}
+
 #endif

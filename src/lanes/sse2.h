@@ -315,4 +315,22 @@ TYNI_SSE2_OP uint32_t tyni_sse2_above16(const uint16_t *t, uint32_t position)
     return ~below;
 }
 
+TYNI_SSE2_OP void tyni_sse2_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
+{
+    __m128i sum[4], low, high;
+    for (int32_t k = 0; k < 4; k++) {
+        sum[k] = _mm_setzero_si128();
+        for (int32_t i = 0; i < n; i += 16) {
+            const __m128i *v = (const __m128i *)(const void *)(a + i);
+            const __m128i w = _mm_loadu_si128((const __m128i *)(const void *)(b[k] + i));
+            low = _mm_madd_epi16(_mm_loadu_si128(v), _mm_srai_epi16(_mm_unpacklo_epi8(w, w), 8));
+            high = _mm_madd_epi16(_mm_loadu_si128(v + 1), _mm_srai_epi16(_mm_unpackhi_epi8(w, w), 8));
+            sum[k] = _mm_add_epi32(sum[k], _mm_add_epi32(low, high));
+        }
+    }
+    low = _mm_add_epi32(_mm_unpacklo_epi32(sum[0], sum[1]), _mm_unpackhi_epi32(sum[0], sum[1]));
+    high = _mm_add_epi32(_mm_unpacklo_epi32(sum[2], sum[3]), _mm_unpackhi_epi32(sum[2], sum[3]));
+    _mm_storeu_si128((__m128i *)(void *)out, _mm_add_epi32(_mm_unpacklo_epi64(low, high), _mm_unpackhi_epi64(low, high)));
+}
+
 #endif

@@ -296,4 +296,15 @@ TYNI_WASM_OP uint32_t tyni_wasm_above16(const uint16_t *t, uint32_t position)
     return word;
 }
 
+TYNI_WASM_OP void tyni_wasm_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
+{
+    for (int32_t k = 0; k < 4; k++) {
+        v128_t sum = wasm_i32x4_splat(0);
+        for (int32_t i = 0; i < n; i += 8)
+            sum = wasm_i32x4_add(sum, wasm_i32x4_dot_i16x8(wasm_v128_load(a + i), wasm_i16x8_load8x8(b[k] + i)));
+        out[k] = wasm_i32x4_extract_lane(sum, 0) + wasm_i32x4_extract_lane(sum, 1) + wasm_i32x4_extract_lane(sum, 2) +
+                 wasm_i32x4_extract_lane(sum, 3);
+    }
+}
+
 #endif

@@ -29,7 +29,7 @@ static tyn_config plain(const gallery *g, tyn_method method)
 static void accuracy(void)
 {
     double sum[3][2] = {{0}}, low = 1e9, high = 0, low_e = 1e9, high_e = 0;
-    printf("\naccuracy and cost, 480x270, 1024 slices at most, map 2048, M = 32, 3 references, 128 columns\n"
+    printf("\naccuracy and cost, 480x270, 1024 slices at most, map 2048, M = 32, 4 references, 96 columns\n"
            "%-12s %9s %9s %9s | %9s %9s %9s | %8s %8s %9s\n",
            "", "prefilt.", "hybrid", "epipolar", "us/slice", "ns/pixel", "KB", "hybrid", "epipolar", "walked %");
     for (int i = 0; places[i]; i++) {
@@ -68,22 +68,23 @@ static void better(void)
         int32_t bases, columns, references, paper, window;
         tyn_weights weights;
         tyn_reference reference;
-    } rows[] = {{"as it is", 32, 128, 3, 0, 0, 0, 0},
-                {"without remap of z", 32, 128, 3, TYN_PAPER_DEPTH, 0, 0, 0},
-                {"without margin", 32, 128, 3, TYN_PAPER_RANGE, 0, 0, 0},
-                {"lit, dark in the basis", 32, 128, 3, TYN_PAPER_COLUMNS, 0, 0, 0},
-                {"same, without margin", 32, 128, 3, TYN_PAPER_COLUMNS | TYN_PAPER_RANGE, 0, 0, 0},
-                {"without walks", 32, 128, 3, TYN_PAPER_EPIPOLE, 0, 0, 0},
-                {"window", 32, 128, 3, 0, 1, 0, 0},
-                {"1 reference, bisectrix", 32, 128, 1, 0, 0, 0, 0},
-                {"1 reference, geometric", 32, 128, 1, 0, 0, 0, TYN_REFERENCE_GEOMETRIC},
-                {"2 references", 32, 128, 2, 0, 0, 0, 0},
-                {"4 references", 32, 128, 4, 0, 0, 0, 0},
-                {"64 columns", 32, 64, 3, 0, 0, 0, 0},
-                {"256 columns", 32, 256, 3, 0, 0, 0, 0},
-                {"1024 columns", 32, 1024, 3, 0, 0, 0, 0},
-                {"16 bases", 16, 128, 3, 0, 0, 0, 0},
-                {"64 bases", 64, 128, 3, 0, 0, 0, 0},
+    } rows[] = {{"as it is", 32, 96, 4, 0, 0, 0, 0},
+                {"without remap of z", 32, 96, 4, TYN_PAPER_DEPTH, 0, 0, 0},
+                {"without margin", 32, 96, 4, TYN_PAPER_RANGE, 0, 0, 0},
+                {"lit, dark in the basis", 32, 96, 4, TYN_PAPER_COLUMNS, 0, 0, 0},
+                {"same, without margin", 32, 96, 4, TYN_PAPER_COLUMNS | TYN_PAPER_RANGE, 0, 0, 0},
+                {"without walks", 32, 96, 4, TYN_PAPER_EPIPOLE, 0, 0, 0},
+                {"window", 32, 96, 4, 0, 1, 0, 0},
+                {"1 reference, bisectrix", 32, 96, 1, 0, 0, 0, 0},
+                {"1 reference, geometric", 32, 96, 1, 0, 0, 0, TYN_REFERENCE_GEOMETRIC},
+                {"2 references", 32, 96, 2, 0, 0, 0, 0},
+                {"3 references", 32, 96, 3, 0, 0, 0, 0},
+                {"64 columns", 32, 64, 4, 0, 0, 0, 0},
+                {"256 columns", 32, 256, 4, 0, 0, 0, 0},
+                {"128 columns, 3 references", 32, 128, 3, 0, 0, 0, 0},
+                {"1024 columns", 32, 1024, 4, 0, 0, 0, 0},
+                {"16 bases", 16, 96, 4, 0, 0, 0, 0},
+                {"64 bases", 64, 96, 4, 0, 0, 0, 0},
                 {"the paper, bisectrix", 32, 1024, 1, 15, 0, 0, 0},
                 {"the paper, geometric", 32, 1024, 1, 15, 0, 0, TYN_REFERENCE_GEOMETRIC},
                 {"the paper, average", 32, 1024, 1, 15, 0, TYN_WEIGHTS_AVERAGE, 0}};
@@ -108,11 +109,11 @@ static void better(void)
         }
         gallery_close(&g);
     }
-    printf("\nbetter than the paper: relative L1, 480x270, prefiltered\n%-24s", "");
+    printf("\nbetter than the paper: relative L1, 480x270, prefiltered\n%-25s", "");
     for (int i = 0; i < n; i++)
         printf(" %10s", places[i]);
     for (int r = 0; r < ROWS; r++) {
-        printf("\n%-24s", rows[r].name);
+        printf("\n%-25s", rows[r].name);
         for (int i = 0; i < n; i++)
             printf(" %10.5f", gap[r][i]);
     }
@@ -309,7 +310,7 @@ static void rectify(void)
         printf(
             "\nrectification: %s, the sun off the right border by a part of half the width; against the march of a 4096 map\n"
             "%8s %8s | %9s %9s | %9s %9s %9s %9s %9s\n",
-            scenes[n], "place", "opening", "march1024", "epipolar", "split 1", "2", "4", "6", "4 to ep.");
+            scenes[n], "place", "weight", "march1024", "epipolar", "split 1", "2", "4", "6", "4 to ep.");
         for (int k = 0; k < (int)(sizeof places_of_sun / sizeof *places_of_sun); k++) {
             /* the camera looks along -z, 60 degrees high at 16 : 9 */
             float d[3] = {-places_of_sun[k] * 1.0264f, -0.35f, 1.0f}, length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
