@@ -16,6 +16,8 @@ void tyni_sample_depths(float *depth, int32_t isa, const tyni_slice *slice, cons
     int32_t last_p = (slice->along_y ? image->height : image->width) - 1;
     int32_t last_m = (slice->along_y ? image->width : image->height) - 1;
     float stride = (float)(door->stride < 0 ? -door->stride : door->stride);
+    for (int32_t j = slice->first & ~31; j < slice->first; j++)
+        depth[j] = 0.0f;
     if (door->plain && (16.0f * tyni_absf(slice->dp) + 18.0f) * (stride + 4.0f) < (float)FAR_APART) {
         TYNI_LANES_CALL(isa, sample_depths, (depth, slice, view, door, last_p, last_m));
         return;

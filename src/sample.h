@@ -20,7 +20,8 @@ static inline int tyni_sample_bit(const uint32_t *words, int32_t j)
 
 /* Arrays over samples have room for whole vectors. isa: of tyni_lanes_choose. */
 
-/* depth[j] for first .. last: view-space depth of the pixel under each sample (the nearest on the screen), 0 .. far. */
+/* depth[j] for first .. last: view-space depth of the pixel under each sample (the nearest on the screen), 0 .. far; and 0
+ * before the first, as far back as breaks are looked for in whole words. */
 void tyni_sample_depths(float *depth, int32_t isa, const tyni_slice *slice, const tyni_view *view, const tyni_door *door);
 
 /* Sets bit j where depth jumps between j and j + 1 by more than `threshold` of the nearer one; clears all others. Returns how
