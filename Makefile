@@ -32,7 +32,7 @@ all: $(B)/libtyndall.a $(B)/tyndall
 run: all
 	$(B)/tyndall showcase $(B)
 
-test: all $(B)/tests $(B)/bench $(B)/bench-papers
+test: all $(B)/tests
 	@B=$(B) CC="$(CC)" CFLAGS="$(CFLAGS)" MAKE="$(MAKE)" sh tests/run.sh
 
 check-all:

@@ -45,6 +45,7 @@ check_format() {
 }
 
 check_compilers() {
+    quiet 'benchmarks build' "$MAKE" -s -j2 B="$B/bench" CC=gcc "$B/bench/bench" "$B/bench/bench-papers" "$B/bench/bench-prefiltered"
     if have clang; then
         if quiet 'clang: builds' "$MAKE" -s -j2 B="$B/clang" CC=clang all "$B/clang/tests"; then
             part env B="$B/clang" CC=clang CFLAGS=-O2 MAKE="$MAKE" sh tests/run.sh

@@ -7,10 +7,10 @@ export B CC CFLAGS MAKE
 
 # The longest rooms beside all others: there are two cores.
 {
-    "$B/tests" accuracy art workers fourier >"$B/long.log" 2>&1
+    "$B/tests" accuracy art workers fourier door query >"$B/long.log" 2>&1
     echo $? >"$B/long.status"
 } &
-part "$B/tests" -accuracy -art -workers -fourier
+part "$B/tests" -accuracy -art -workers -fourier -door -query
 for script in tests/proofs*.sh tests/tool*.sh tests/post*.sh; do
     [ -f "$script" ] && part sh "$script"
 done

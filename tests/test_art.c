@@ -8,7 +8,7 @@
 #include "stock.h"
 #include "test.h"
 
-enum { W = 32, H = 24, PIXELS = W * H, COUNT = 3 * PIXELS };
+enum { W = 24, H = 18, PIXELS = W * H, COUNT = 3 * PIXELS };
 
 /* Zeros everywhere are physics. */
 typedef struct art {

@@ -45,7 +45,7 @@ static void test_one(int32_t isa)
         static picture scalar, other;
         oracle_scene *scene = stock_new(stock_list[n].name, W, H);
         rig *r = rig_new(scene, 120);
-        for (int way = n % 2; r && way < RIG_WAYS; way += 2) {
+        for (int way = n % 4; r && way < RIG_WAYS; way += 4) {
             tyn_config config = rig_way_config(r, &rig_ways[way]);
             config.samples = n % 3 == 2 ? 40 : 0; /* each second column */
             draw(r, &config, TYN_ISA_SCALAR, n + way, &scalar);
