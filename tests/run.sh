@@ -5,15 +5,19 @@
 . tests/shell.sh
 export B CC CFLAGS MAKE
 
-# The longest rooms beside all others: there are two cores.
+# The longest of them beside all others: there are two cores.
 {
     "$B/tests" accuracy art workers fourier door query >"$B/long.log" 2>&1
     echo $? >"$B/long.status"
+    sh tests/proofs_install.sh >"$B/install.log" 2>&1
+    echo $? >"$B/install.status"
 } &
 part "$B/tests" -accuracy -art -workers -fourier -door -query
-for script in tests/proofs*.sh tests/tool*.sh tests/post*.sh; do
-    [ -f "$script" ] && part sh "$script"
+for script in tests/proofs.sh tests/proofs_calls.sh tests/tool.sh tests/post.sh; do
+    part sh "$script"
 done
 wait
-part sh -c "cat '$B/long.log'; exit \$(cat '$B/long.status')"
+for log in long install; do
+    part sh -c "cat '$B/$log.log'; exit \$(cat '$B/$log.status')"
+done
 total
