@@ -9,15 +9,17 @@ export B CC CFLAGS MAKE
 {
     "$B/tests" accuracy art workers fourier door query >"$B/long.log" 2>&1
     echo $? >"$B/long.status"
-    sh tests/proofs_install.sh >"$B/install.log" 2>&1
-    echo $? >"$B/install.status"
+    for script in proofs proofs_install; do
+        sh tests/$script.sh >"$B/$script.log" 2>&1
+        echo $? >"$B/$script.status"
+    done
 } &
 part "$B/tests" -accuracy -art -workers -fourier -door -query
-for script in tests/proofs.sh tests/proofs_calls.sh tests/tool.sh tests/post.sh; do
-    part sh "$script"
+for script in proofs_calls tool post; do
+    part sh tests/$script.sh
 done
 wait
-for log in long install; do
+for log in long proofs proofs_install; do
     part sh -c "cat '$B/$log.log'; exit \$(cat '$B/$log.status')"
 done
 total
