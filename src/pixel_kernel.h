@@ -165,6 +165,20 @@ TYNI_V_INLINE v_float TYNI_V(pixel_between)(v_float a, v_float b, float blend)
     return v_select(near, straight, a * v_exp(blend * v_log(b / a)));
 }
 
+/* Visibility of the three channels at pixels i .. i + v_n - 1: as lines hold it, or the third from the other two. */
+TYNI_V_INLINE void TYNI_V(pixel_channels)(const tyni_pass *p, const run *r, int32_t i, v_float value[3])
+{
+    const tyni_medium *m = &p->medium;
+    for (int32_t c = 0; c < 3; c++)
+        value[c] = v_load(r->value[c] + i);
+    if (p->count != 3) {
+        const v_float low = value[0], high = value[1];
+        value[m->low] = low;
+        value[m->high] = high;
+        value[m->middle] = TYNI_V(pixel_between)(low, high, m->blend);
+    }
+}
+
 /* Bits i .. i + v_n - 1, i a multiple of v_n, as a mask. */
 TYNI_V_INLINE v_mask TYNI_V(pixel_bits)(const uint32_t *words, int32_t i)
 {
@@ -186,14 +200,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_shade)(const tyni_pass *p, const run *r)
         if (v_none(wanted))
             continue;
         TYNI_V(medium_mix)(m, v_load(r->cosine + i), mix);
-        for (int32_t c = 0; c < 3; c++)
-            light[c] = v_load(r->value[c] + i);
-        if (p->count != 3) {
-            const v_float low = light[0], high = light[1];
-            light[m->low] = low;
-            light[m->high] = high;
-            light[m->middle] = TYNI_V(pixel_between)(low, high, m->blend);
-        }
+        TYNI_V(pixel_channels)(p, r, i, light);
         for (int32_t c = 0; c < 3; c++) {
             v_float norm = to * v_fog(m->sigma[c] * to);
             if (tyni_view_bounded(p->lamp))
@@ -305,14 +312,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade_local)(const tyni_pas
             for (int32_t c = 0; c < 3; c++)
                 all.norm[c] = all.norm[c] + rest.norm[c];
         }
-        for (int32_t c = 0; c < 3; c++)
-            light[c] = v_load(r->value[c] + i);
-        if (p->count != 3) {
-            const v_float low = light[0], high = light[1];
-            light[m->low] = low;
-            light[m->high] = high;
-            light[m->middle] = TYNI_V(pixel_between)(low, high, m->blend);
-        }
+        TYNI_V(pixel_channels)(p, r, i, light);
         for (int32_t c = 0; c < 3; c++) {
             v_store(r->light[c] + i,
                     v_load(r->light[c] + i) + v_select(wanted, light[c] * all.norm[c] * p->lamp->colour[c], v_set(0.0f)));
