@@ -178,7 +178,7 @@ static void correct(const tyni_pass *p, const run *r)
         if (steps)
             tyni_walk_pixel_steps(p->context->config.isa, p->lamp, &p->medium, &v, r->reach[i], steps, light);
         else
-            tyni_walk_pixel(p->lamp, &p->medium, &v, r->reach[i], light);
+            tyni_walk_pixel(p->context->config.isa, p->lamp, &p->medium, &v, r->reach[i], light);
         for (int32_t c = 0; c < 3; c++)
             r->light[c][i] += light[c];
         count++;

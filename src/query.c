@@ -6,6 +6,7 @@
 #include "art.h"
 #include "check.h"
 #include "jobs.h"
+#include "lanes/lanes.h"
 #include "medium.h"
 #include "num.h"
 #include "slide.h"
@@ -22,7 +23,7 @@ typedef struct pass {
     const tyn_frame *frame;
     const tyn_query_point *points;
     tyn_query_result *results;
-    int32_t count;
+    int32_t count, isa;
     tyni_view view;
     tyni_medium medium;
     float fog[3];
@@ -50,7 +51,7 @@ static void add_light(const pass *p, const tyn_light *light, int32_t first, int3
         float s = ray_of(p, &p->points[i], &v), rgb[3];
         if (!(s > 0.0f))
             continue;
-        tyni_walk_pixel(&lamp, &p->medium, &v, s, rgb);
+        tyni_walk_pixel(p->isa, &lamp, &p->medium, &v, s, rgb);
         for (int32_t c = 0; c < 3; c++)
             p->results[i].scatter[c] += rgb[c];
     }
@@ -107,6 +108,8 @@ tyn_status tyn_query(const tyn_frame *frame, const tyn_query_point *points, tyn_
     tyni_jobs jobs = {NULL, NULL, 1};
     tyn_status status = check(frame, points, results, count);
     pass p;
+    if (status == TYN_OK)
+        status = tyni_lanes_choose(0, &p.isa);
     if (status != TYN_OK)
         return status;
     jobs.executor = frame->executor;

@@ -2,6 +2,7 @@
 #include "row.h"
 
 #include "base.h"
+#include "course.h"
 #include "lanes/lanes.h"
 
 /* Columns of a slice as directions (n, d) in half a circle: n = x and d = 1 - y / distance, so that n / d is the tangent of the
@@ -104,41 +105,15 @@ static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice,
     return 1;
 }
 
-/* The line on the map: starts at step coordinate 0, where it is at `minor`, and rises by `slope` a step. */
-typedef struct course {
-    int32_t across; /* the major axis is u */
-    float sign;     /* way along the major axis */
-    float base;     /* texel border that is step coordinate 0 */
-    float minor, slope;
-    float from, to; /* step coordinates of its ends */
-    int32_t steps;
-} course;
-
-static void course_begin(course *c, const float u[2], const float v[2])
-{
-    const float *major, *other;
-    c->across = tyni_absf(u[1] - u[0]) >= tyni_absf(v[1] - v[0]);
-    major = c->across ? u : v;
-    other = c->across ? v : u;
-    c->sign = major[1] >= major[0] ? 1.0f : -1.0f;
-    c->base = c->sign > 0.0f ? (float)tyni_floori(major[0]) : (float)tyni_ceili(major[0]);
-    c->slope = major[1] != major[0] ? (other[1] - other[0]) / (c->sign * (major[1] - major[0])) : 0.0f;
-    c->minor = other[0] - c->slope * (c->sign * (major[0] - c->base));
-    c->from = c->sign * (major[0] - c->base);
-    c->to = c->sign * (major[1] - c->base);
-    c->steps = tyni_maxi(tyni_ceili(c->to), 1);
-}
-
 #define TYNI_KERNEL "row_kernel.h"
 #include "lanes/each.h"
 
-static void fill(tyni_piece *piece, uint16_t *threshold, float *split, int32_t isa, const tyni_map *map, const course *c,
+static void fill(tyni_piece *piece, uint16_t *threshold, float *split, int32_t isa, const tyni_map *map, const tyni_course *c,
                  const ends *e)
 {
     const tyni_texels *t = &map->texels;
-    int32_t size = c->across ? t->width : t->height;
-    int32_t first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
-    piece->steps = tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
+    int32_t first;
+    piece->steps = tyni_course_on(c, t, &first);
     TYNI_LANES_CALL(isa, row_fill, (t, c, e, first, piece->steps, threshold, split));
 }
 
@@ -155,9 +130,9 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
 {
     tyni_piece *piece = &row->pieces[row->count];
     const tyni_form *form;
-    course c;
+    tyni_course c;
     ends e;
-    course_begin(&c, u, v);
+    tyni_course_begin(&c, u, v);
     if (row->count >= TYNI_ROW_PIECES || (size_t)c.steps > w->room)
         return;
     form = c.across ? &map->u : &map->v;

@@ -13,8 +13,8 @@ TYNI_V_INLINE v_int TYNI_V(row_column)(const ends *e, v_float g, v_float z)
     return v_trunc(v_select(some, part, v_set(65535.0f)));
 }
 
-static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const course *c, const ends *e, int32_t first, int32_t steps,
-                                           uint16_t *threshold, float *split)
+static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_course *c, const ends *e, int32_t first,
+                                           int32_t steps, uint16_t *threshold, float *split)
 {
     const int32_t pitch = (int32_t)t->pitch, way = c->sign > 0.0f ? 1 : -1;
     const int32_t along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;

@@ -2,6 +2,7 @@
 #include "walk.h"
 
 #include "base.h"
+#include "course.h"
 #include "lanes/lanes.h"
 #include "line.h"
 #include "meter.h"
@@ -64,60 +65,147 @@ static float track_t(const track *k, float s)
     return (a * k->t[0] + b * k->t[1]) / (a + b);
 }
 
-/* One axis of the walk: the texel, where in s the next border is, and how far apart borders are. */
-typedef struct axis {
-    int32_t texel, step;
-    float next, pitch;
-} axis;
+/* A track step by step along its course: step k lies between k and k + 1. In a step the ray crosses one texel, or two that meet
+ * at k + cut. */
+typedef struct traversal {
+    const tyni_texels *texels;
+    tyni_course course;
+    int32_t first, steps; /* the first step's texel along the major axis */
+    float rise;           /* 1 / slope */
+    float z, dz;          /* of step coordinates: z + k dz */
+} traversal;
 
-static axis axis_begin(float x, float dx, int32_t size)
+/* 0: the course has no length, the ray stays in one texel. */
+static int traversal_begin(traversal *r, const tyni_map *map, const track *k)
 {
-    axis a;
-    a.texel = tyni_clampi((int32_t)x, 0, size - 1);
-    a.step = dx >= 0.0f ? 1 : -1;
-    if (tyni_absf(dx) > 1e-6f) {
-        a.pitch = 1.0f / tyni_absf(dx);
-        a.next = tyni_maxf((dx >= 0.0f ? (float)a.texel + 1.0f - x : x - (float)a.texel) * a.pitch, 0.0f);
-    } else {
-        a.pitch = 2.0f;
-        a.next = 2.0f;
-    }
-    return a;
+    float u[2], v[2], length;
+    u[0] = k->u;
+    u[1] = k->u + k->du;
+    v[0] = k->v;
+    v[1] = k->v + k->dv;
+    tyni_course_begin(&r->course, u, v);
+    r->texels = &map->texels;
+    r->steps = tyni_course_on(&r->course, r->texels, &r->first);
+    r->rise = 1.0f / r->course.slope;
+    length = r->course.to - r->course.from;
+    if (!(length > 1e-6f))
+        return 0;
+    r->dz = k->dz / length;
+    r->z = k->z - r->course.from * r->dz;
+    return 1;
 }
 
-static void walk_texels(const tyni_map *map, const track *k, tyni_meter *m)
+/* Of 32 steps, a bit each: whether the ray is lit where it comes into the step's first texel and where it leaves it, then the
+ * same of the second; where there is none, what the first one left behind. */
+typedef struct states {
+    uint32_t in[2], out[2];
+} states;
+
+/* ---- kernels ---- */
+
+/* Steps side by side: the middle of step i is at from + (i + 0.5) dt. */
+typedef struct stride {
+    float from, dt;
+    int32_t steps;
+} stride;
+
+/* A map's forms along the ray. */
+typedef struct trail {
+    tyni_line u, v, z, w;
+} trail;
+
+static void trail_of(trail *t, const tyni_map *map, const tyni_sight *v)
 {
-    const tyni_texels *texels = &map->texels;
-    axis u = axis_begin(k->u, k->du, texels->width), v = axis_begin(k->v, k->dv, texels->height);
-    float s = 0.0f, za = k->z;
-    /* every step leaves a texel for good: at most both sides of them, whatever rounding does */
-    for (int32_t left = texels->width + texels->height + 2; left > 0; left--) {
-        float depth = tyni_texels_at(texels, u.texel, v.texel);
-        float end = tyni_minf(tyni_minf(u.next, v.next), 1.0f), zb = k->z + end * k->dz;
-        int open = !(depth > 0.0f), lit_a, lit_b;
-        lit_a = open || za >= depth;
-        lit_b = open || zb >= depth;
-        if ((lit_a != m->outside) != m->on)
-            tyni_meter_lit(m, lit_a, track_t(k, s));
-        if (lit_b != lit_a)
-            tyni_meter_lit(m, lit_b, track_t(k, s + (end - s) * ((depth - za) / (zb - za))));
-        if (end >= 1.0f)
-            return;
-        if (u.next <= v.next) {
-            u.texel += u.step;
-            u.next += u.pitch;
-        } else {
-            v.texel += v.step;
-            v.next += v.pitch;
+    t->u = tyni_line_along(&map->u, v);
+    t->v = tyni_line_along(&map->v, v);
+    t->z = tyni_line_along(&map->z, v);
+    t->w = tyni_line_along(&map->w, v);
+}
+
+/* Slides and tints at n places; red, green and blue `pitch` apart. */
+static void colours(const tyni_lamp *lamp, const tyni_sight *v, const float *t, int32_t n, float *rgb, int32_t pitch)
+{
+    for (int32_t i = 0; i < n; i++) {
+        float one[3];
+        tyni_view_colour(lamp, tyni_sight_at(v, t[i]), one);
+        for (int32_t c = 0; c < 3; c++)
+            rgb[c * pitch + i] = one[c];
+    }
+}
+
+#define TYNI_KERNEL "walk_kernel.h"
+#include "lanes/each.h"
+
+/* ---- the exact walk ---- */
+
+/* t of a step coordinate. */
+static float step_t(const traversal *r, const track *way, float at)
+{
+    return track_t(way, tyni_clampf((at - r->course.from) / (r->course.to - r->course.from), 0.0f, 1.0f));
+}
+
+/* Where a ray whose depth goes from za to zb passes z, from 0 to 1. */
+static float passes(float za, float zb, float z)
+{
+    return za != zb ? tyni_clampf((z - za) / (zb - za), 0.0f, 1.0f) : 0.0f;
+}
+
+/* Step k, in which something changes: what walk_states does, and where. */
+static void switch_in_step(const traversal *r, const track *way, int32_t k, const states *lit, int32_t bit, tyni_meter *m)
+{
+    const tyni_course *c = &r->course;
+    int32_t major = r->first + (c->sign > 0.0f ? k : -k), most = (c->across ? r->texels->height : r->texels->width) - 1;
+    float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * ((float)k + 1.0f), at[3];
+    int32_t minor[2];
+    minor[0] = tyni_clampi(tyni_floori(from), 0, most);
+    minor[1] = tyni_clampi(tyni_floori(to), 0, most);
+    at[0] = tyni_maxf((float)k, c->from);
+    at[1] = at[2] = tyni_minf((float)k + 1.0f, c->to);
+    if (minor[0] != minor[1])
+        at[1] = tyni_clampf((float)k + ((float)tyni_maxi(minor[0], minor[1]) - from) * r->rise, at[0], at[2]);
+    for (int32_t i = 0; i < 2; i++) {
+        int in = lit->in[i] >> bit & 1, out = lit->out[i] >> bit & 1;
+        if ((in != m->outside) != m->on)
+            tyni_meter_lit(m, in, step_t(r, way, at[i]));
+        if (in != out) {
+            float z = tyni_texels_at(r->texels, c->across ? major : minor[i], c->across ? minor[i] : major);
+            z = passes(r->z + at[i] * r->dz, r->z + at[i + 1] * r->dz, z);
+            tyni_meter_lit(m, out, step_t(r, way, at[i] + z * (at[i + 1] - at[i])));
         }
-        if ((uint32_t)u.texel >= (uint32_t)texels->width || (uint32_t)v.texel >= (uint32_t)texels->height)
-            return;
-        s = end;
-        za = zb;
     }
 }
 
-void tyni_walk_ray(const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, float *light)
+static void walk_texel(const tyni_map *map, const track *way, tyni_meter *m)
+{
+    const tyni_texels *t = &map->texels;
+    float z = tyni_texels_at(t, tyni_mini((int32_t)way->u, t->width - 1), tyni_mini((int32_t)way->v, t->height - 1));
+    float za = tyni_maxf(way->z, 0.0f), zb = tyni_maxf(way->z + way->dz, 0.0f);
+    tyni_meter_lit(m, za >= z, way->t[0]);
+    if ((za >= z) != (zb >= z))
+        tyni_meter_lit(m, zb >= z, track_t(way, passes(way->z, way->z + way->dz, z)));
+}
+
+static void walk_texels(int32_t isa, const tyni_map *map, const track *way, tyni_meter *m)
+{
+    traversal r;
+    states lit;
+    if (!traversal_begin(&r, map, way)) {
+        walk_texel(map, way, m);
+        return;
+    }
+    for (int32_t k = 0; k < r.steps; k += 32) {
+        uint32_t before = (uint32_t)(m->on != m->outside), changes;
+        TYNI_LANES_CALL(isa, walk_states, (&r, k, &lit));
+        changes = (lit.in[0] ^ (lit.out[1] << 1 | before)) | (lit.in[0] ^ lit.out[0]) | (lit.out[0] ^ lit.in[1]);
+        changes |= lit.in[1] ^ lit.out[1];
+        if (r.steps - k < 32)
+            changes &= (1u << (r.steps - k)) - 1u;
+        for (; changes; changes &= changes - 1)
+            switch_in_step(&r, way, k + tyni_ctz32(changes), &lit, tyni_ctz32(changes), m);
+    }
+}
+
+void tyni_walk_ray(int32_t isa, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, float *light)
 {
     /* parts of the ray that no map has covered yet */
     float part[TYN_MAX_MAPS + 1][2];
@@ -134,7 +222,7 @@ void tyni_walk_ray(const tyni_lamp *lamp, const tyni_integral *it, const tyni_si
             float end = part[n][1];
             if (!(part[n][0] < end) || !track_begin(&k, &lamp->maps[i], v, part[n]))
                 continue;
-            walk_texels(&lamp->maps[i], &k, &m);
+            walk_texels(isa, &lamp->maps[i], &k, &m);
             tyni_meter_lit(&m, lamp->outside, k.t[1]);
             part[n][1] = k.t[0];
             if (k.t[1] < end && parts <= TYN_MAX_MAPS) {
@@ -171,39 +259,6 @@ static void inside_frustum(const tyni_lamp *lamp, const tyni_medium *medium, con
     t[1] = to;
 }
 
-/* Steps side by side: the middle of step i is at from + (i + 0.5) dt. */
-typedef struct stride {
-    float from, dt;
-    int32_t steps;
-} stride;
-
-/* A map's forms along the ray. */
-typedef struct trail {
-    tyni_line u, v, z, w;
-} trail;
-
-static void trail_of(trail *t, const tyni_map *map, const tyni_sight *v)
-{
-    t->u = tyni_line_along(&map->u, v);
-    t->v = tyni_line_along(&map->v, v);
-    t->z = tyni_line_along(&map->z, v);
-    t->w = tyni_line_along(&map->w, v);
-}
-
-/* Slides and tints at n places; red, green and blue `pitch` apart. */
-static void colours(const tyni_lamp *lamp, const tyni_sight *v, const float *t, int32_t n, float *rgb, int32_t pitch)
-{
-    for (int32_t i = 0; i < n; i++) {
-        float one[3];
-        tyni_view_colour(lamp, tyni_sight_at(v, t[i]), one);
-        for (int32_t c = 0; c < 3; c++)
-            rgb[c * pitch + i] = one[c];
-    }
-}
-
-#define TYNI_KERNEL "walk_kernel.h"
-#include "lanes/each.h"
-
 void tyni_walk_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t0, float t1,
                      int32_t steps, float light[3])
 {
@@ -236,7 +291,8 @@ static void colour_in(const tyni_lamp *lamp, const tyni_medium *medium, const ty
         light[c] *= mix[c] * lamp->colour[c];
 }
 
-void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, float light[3])
+void tyni_walk_pixel(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s,
+                     float light[3])
 {
     static const int32_t channels[3] = {0, 1, 2};
     float t0 = 0.0f, t1 = s;
@@ -245,7 +301,7 @@ void tyni_walk_pixel(const tyni_lamp *lamp, const tyni_medium *medium, const tyn
     if (!tyni_view_clip(lamp, v, &t0, &t1))
         return;
     tyni_integral_begin(&it, medium, lamp, v, t0, t1, channels, 3);
-    tyni_walk_ray(lamp, &it, v, light);
+    tyni_walk_ray(isa, lamp, &it, v, light);
     colour_in(lamp, medium, v, light);
 }
 

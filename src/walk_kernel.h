@@ -1,4 +1,57 @@
-/* walk_kernel.h - a template: the fixed steps of a ray side by side, for walk.c. */
+/* walk_kernel.h - a template: texels and fixed steps of a ray side by side, for walk.c. */
+
+/* Steps k .. k + 31; what lies behind the last is anything. A ray behind the farthest depth is at it, so that where a texel has
+ * no depth, 0, it is lit. */
+static TYNI_V_TARGET void TYNI_V(walk_states)(const traversal *r, int32_t k, states *lit)
+{
+    const tyni_texels *t = r->texels;
+    const tyni_course *c = &r->course;
+    const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
+    const int32_t way = c->sign > 0.0f ? along : -along, base = r->first * along;
+    const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
+    const v_float zero = v_set(0.0f);
+    uint32_t in0 = 0, out0 = 0, in1 = 0, out1 = 0;
+    v_float to = zero, z2 = zero;
+    v_int b = none;
+    for (int32_t i = 0; i < 32 && k + i < r->steps; i += v_n) {
+        const v_int step = v_imin(v_iadd(v_iset(k + i), v_index()), v_iset(r->steps - 1));
+        const v_int texel = v_iadd(v_imul(step, v_iset(way)), v_iset(base));
+        const v_float at = v_to_float(step), at0 = v_max(at, v_set(c->from)), at2 = v_min(at + 1.0f, v_set(c->to));
+        v_float from = to, z0 = z2;
+        v_int a = b;
+        v_mask one;
+        if (v_n > 1 || i == 0) { /* one lane has them: a step begins where the one before it ends */
+            from = c->minor + c->slope * at;
+            z0 = v_max(r->z + at0 * r->dz, zero);
+            a = v_imin(v_imax(v_floori(from), none), most);
+        }
+        to = c->minor + c->slope * (at + 1.0f);
+        z2 = v_max(r->z + at2 * r->dz, zero);
+        b = v_imin(v_imax(v_floori(to), none), most);
+        one = v_ieq(a, b);
+        v_float depth = TYNI_V(door_texels)(t, v_iadd(texel, v_imul(a, v_iset(aside)))), z1 = z2;
+        v_mask in, out;
+        if (!v_all(one)) {
+            const v_float cut = v_clamp(at + (v_to_float(v_imax(a, b)) - from) * r->rise, at0, at2);
+            z1 = v_select(one, z2, v_max(r->z + cut * r->dz, zero));
+        }
+        in0 |= v_word(v_ge(z0, depth)) << i;
+        out = v_ge(z1, depth);
+        out0 |= v_word(out) << i;
+        in = out;
+        if (!v_all(one)) {
+            depth = TYNI_V(door_texels)(t, v_iadd(texel, v_imul(b, v_iset(aside))));
+            in = v_mor(v_mand(one, out), v_mandnot(v_ge(z1, depth), one));
+            out = v_mor(v_mand(one, out), v_mandnot(v_ge(z2, depth), one));
+        }
+        in1 |= v_word(in) << i;
+        out1 |= v_word(out) << i;
+    }
+    lit->in[0] = in0;
+    lit->out[0] = out0;
+    lit->in[1] = in1;
+    lit->out[1] = out1;
+}
 
 /* Which steps are lit: each is looked up in the first map that covers it. */
 TYNI_V_INLINE v_mask TYNI_V(walk_lit)(const tyni_lamp *lamp, const tyni_sight *v, v_float t, v_mask wanted)
