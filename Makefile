@@ -38,8 +38,9 @@ test: all $(B)/tests
 check-all:
 	@MAKE="$(MAKE)" sh tests/check-all.sh
 
-bench: $(B)/bench $(B)/bench-papers
-	$(B)/bench
+bench: $(B)/bench $(B)/bench-growth $(B)/bench-papers
+	$(B)/bench all
+	$(B)/bench-growth
 	$(B)/bench-papers
 
 # The rasterizer against Mesa's llvmpipe, where pkg-config finds EGL and GL.
@@ -79,7 +80,7 @@ $(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
 $(B)/bench: $(call OBJ,tests/bench/bench.c) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
-$(B)/bench-papers: $(call OBJ,tests/bench/papers.c) $(B)/libport.a $(B)/libtyndall.a
+$(addprefix $(B)/bench-,frame growth papers): $(B)/bench-%: $(B)/obj/tests/bench/%.o $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
 
 $(B)/bench-raster: tests/bench/raster.c tests/bench/llvmpipe.c tests/bench/raster.h $(B)/libport.a $(B)/libtyndall.a

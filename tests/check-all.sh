@@ -1,7 +1,7 @@
 #!/bin/sh
 # check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; a fresh clone as the
 # README has it; and renders of the shared data. About a quarter of an hour on 2 cores. What a machine lacks is SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind clone shared
+#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions clone shared
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -45,7 +45,8 @@ check_format() {
 }
 
 check_compilers() {
-    quiet 'benchmarks build' "$MAKE" -s -j2 B="$B/bench" CC=gcc "$B/bench/bench" "$B/bench/bench-papers" "$B/bench/bench-prefiltered"
+    quiet 'benchmarks build' "$MAKE" -s -j2 B="$B/bench" CC=gcc "$B/bench/bench" "$B/bench/bench-frame" \
+        "$B/bench/bench-growth" "$B/bench/bench-papers" "$B/bench/bench-prefiltered"
     if have clang; then
         if quiet 'clang: builds' "$MAKE" -s -j2 B="$B/clang" CC=clang all "$B/clang/tests"; then
             part env B="$B/clang" CC=clang CFLAGS=-O2 MAKE="$MAKE" sh tests/run.sh
@@ -100,6 +101,10 @@ check_valgrind() {
     if quiet 'valgrind: builds' "$MAKE" -s -j2 B="$B/valgrind" CFLAGS='-O1 -g' "$B/valgrind/tests"; then
         part valgrind -q --error-exitcode=9 --leak-check=full "$B/valgrind/tests" api render golden
     fi
+}
+
+check_instructions() {
+    part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/instructions.sh
 }
 
 # The commands that stand in the README, in a clone of what is committed.
@@ -253,7 +258,7 @@ check_shared() {
     if [ -d "$shared/data" ]; then check_models; else skip "no $shared/data"; fi
 }
 
-for check in format compilers sanitizers valgrind clone shared; do
+for check in format compilers sanitizers valgrind instructions clone shared; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)

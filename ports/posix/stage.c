@@ -182,7 +182,7 @@ tyn_context *stage_context(const tyn_config *config)
 }
 
 /* `scatter`: wanted too, which is not timed. */
-static void render(stage *s, tyn_context *context, pool *threads, int scatter, tyn_stats *stats)
+static void render(stage *s, tyn_context *context, const tyn_executor *executor, int scatter, tyn_stats *stats)
 {
     tyn_frame frame;
     memset(&frame, 0, sizeof frame);
@@ -200,7 +200,7 @@ static void render(stage *s, tyn_context *context, pool *threads, int scatter, t
     frame.light_count = 1;
     frame.media = s->scene.media;
     frame.medium_count = s->scene.medium_count;
-    frame.executor = pool_executor(threads);
+    frame.executor = executor;
     frame.clock = bench_now;
     frame.stats = stats;
     bench_need(tyn_render(context, &frame), "tyn_render");
@@ -208,10 +208,15 @@ static void render(stage *s, tyn_context *context, pool *threads, int scatter, t
 
 void stage_time(stage *s, tyn_context *context, pool *threads, record *best)
 {
+    stage_time_by(s, context, pool_executor(threads), best);
+}
+
+void stage_time_by(stage *s, tyn_context *context, const tyn_executor *executor, record *best)
+{
     tyn_stats stats;
     uint64_t start = bench_now(NULL);
     double ms;
-    render(s, context, threads, 0, &stats);
+    render(s, context, executor, 0, &stats);
     ms = bench_ms_since(start);
     if (best->ms <= 0 || ms < best->ms) {
         best->ms = ms;
@@ -228,7 +233,7 @@ record stage_truth(stage *s, pool *threads)
     config.method = TYN_METHOD_MARCH;
     context = stage_context(&config);
     start = bench_now(NULL);
-    render(s, context, threads, 1, &r.stats);
+    render(s, context, pool_executor(threads), 1, &r.stats);
     r.ms = bench_ms_since(start);
     memcpy(s->truth, s->target, 4 * s->pixels);
     memcpy(s->truth_scatter, s->scatter, 3 * s->pixels * sizeof *s->scatter);
@@ -241,7 +246,7 @@ gap stage_compare(stage *s, tyn_context *context, pool *threads)
     double sum = 0, off = 0, all = 0;
     gap g = {0, 99, 0};
     tyn_stats stats;
-    render(s, context, threads, 1, &stats);
+    render(s, context, pool_executor(threads), 1, &stats);
     for (size_t i = 0; i < 4 * s->pixels; i++) {
         int apart = abs(s->target[i] - s->truth[i]);
         sum += apart * apart;

@@ -45,6 +45,7 @@ tyn_context *stage_context(const tyn_config *config);
 
 /* Renders once, into target; `best` keeps the fastest. */
 void stage_time(stage *s, tyn_context *context, pool *threads, record *best);
+void stage_time_by(stage *s, tyn_context *context, const tyn_executor *executor, record *best);
 
 /* The exact march as the truth of stage_compare. Returns its time. */
 record stage_truth(stage *s, pool *threads);
