@@ -110,7 +110,7 @@ static TYNI_NOINLINE void walk_exactly(const tyni_pass *p, const tyni_sight *v, 
 {
     tyni_integral it;
     tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
-    tyni_walk_ray(p->context->config.isa, p->lamp, &it, v, light);
+    tyni_walk_ray(p->context->config.isa, p->lamp, &it, v, 1, light);
 }
 
 void tyni_pass_walk(const tyni_pass *p, const tyni_sight *v, float s, float value[3])

@@ -58,9 +58,9 @@ static int32_t side_begin(const tyni_slices *g, int32_t x, int32_t end, float dy
     return x;
 }
 
-/* How many pixels away one that fits no sample looks for its surface, in the light of an unbounded sun: a lamp's varies too
+/* How many samples away a pixel that fits none looks for its surface, in the light of an unbounded sun: a lamp's varies too
  * fast, and ends at its cone. Leaves have most such pixels: of 9951 with rays of their own in a picture of 1920x1080, 832 are
- * left, at a loss of 0.1 dB to the march. */
+ * left, at a loss of 0.1 dB to the march; with samples two pixels apart 5027 become 2288 at 960x540, for 0.2 dB. */
 #define BESIDE 4
 
 #define TYNI_KERNEL "pixel_kernel.h"
@@ -170,6 +170,9 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
 static void correct(const tyni_pass *p, const run *r)
 {
     int32_t steps = p->context->config.rays == TYN_RAYS_STEPS ? p->context->config.steps : 0, count = 0;
+    /* where a line's samples are some pixels apart, so may the texels be */
+    int32_t pace =
+        p->method == TYN_METHOD_EPIPOLAR && p->slices.layout == TYNI_LAYOUT_SHEAR ? tyni_maxi(p->slices.stride, 1) : 1;
     for (int32_t i = tyni_sample_next(r->rejected, 0, r->count - 1); i < r->count;
          i = tyni_sample_next(r->rejected, i + 1, r->count - 1)) {
         float light[3];
@@ -178,7 +181,7 @@ static void correct(const tyni_pass *p, const run *r)
         if (steps)
             tyni_walk_pixel_steps(p->context->config.isa, p->lamp, &p->medium, &v, r->reach[i], steps, light);
         else
-            tyni_walk_pixel(p->context->config.isa, p->lamp, &p->medium, &v, r->reach[i], light);
+            tyni_walk_pixel(p->context->config.isa, p->lamp, &p->medium, &v, r->reach[i], pace, light);
         for (int32_t c = 0; c < 3; c++)
             r->light[c][i] += light[c];
         count++;

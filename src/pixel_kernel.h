@@ -91,7 +91,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
     const float slant = (sector->border - py) / dy;
     const int32_t last = sector->count - 2, most = p->lines.pitch - 1;
     const int sun = p->lamp->kind == TYN_LIGHT_DIRECTIONAL && !tyni_view_bounded(p->lamp);
-    const int32_t beside = sun ? BESIDE / g->stride : 0;
+    const int32_t beside = sun ? BESIDE : 0;
     int32_t shift = 0;
     if (sector->count < 2)
         return; /* no slices at all */

@@ -51,7 +51,7 @@ static void add_light(const pass *p, const tyn_light *light, int32_t first, int3
         float s = ray_of(p, &p->points[i], &v), rgb[3];
         if (!(s > 0.0f))
             continue;
-        tyni_walk_pixel(p->isa, &lamp, &p->medium, &v, s, rgb);
+        tyni_walk_pixel(p->isa, &lamp, &p->medium, &v, s, 1, rgb);
         for (int32_t c = 0; c < 3; c++)
             p->results[i].scatter[c] += rgb[c];
     }

@@ -65,7 +65,7 @@ static void row_value(const tyni_pass *p, const tyni_finder *finder, const tyni_
         return;
     tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
     if (tyni_ray_coarse(finder->row, &it, v)) {
-        tyni_walk_ray(p->context->config.isa, p->lamp, &it, v, light);
+        tyni_walk_ray(p->context->config.isa, p->lamp, &it, v, 1, light);
         stats->walks++;
     } else {
         stats->looked += tyni_ray_row(finder, at, p->lamp, &it, v, light);

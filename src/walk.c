@@ -185,12 +185,36 @@ static void walk_texel(const tyni_map *map, const track *way, tyni_meter *m)
         tyni_meter_lit(m, zb >= z, track_t(way, passes(way->z, way->z + way->dz, z)));
 }
 
-static void walk_texels(int32_t isa, const tyni_map *map, const track *way, tyni_meter *m)
+#define PACES 64 /* at least: rays over few texels are looked at closely */
+
+/* A texel in the middle of every `pace` steps stands for all of them. */
+static void walk_paces(int32_t isa, const traversal *r, int32_t pace, const track *way, tyni_meter *m)
+{
+    int32_t count = (r->steps + pace - 1) / pace;
+    for (int32_t k = 0; k < count; k += 32) {
+        uint32_t before = (uint32_t)(m->on != m->outside), lit, changes;
+        TYNI_LANES_CALL(isa, walk_paces, (r, pace, k, &lit));
+        changes = lit ^ (lit << 1 | before);
+        if (count - k < 32)
+            changes &= (1u << (count - k)) - 1u;
+        for (; changes; changes &= changes - 1) {
+            int32_t bit = tyni_ctz32(changes);
+            tyni_meter_lit(m, lit >> bit & 1, step_t(r, way, (float)((k + bit) * pace)));
+        }
+    }
+}
+
+static void walk_texels(int32_t isa, const tyni_map *map, int32_t pace, const track *way, tyni_meter *m)
 {
     traversal r;
     states lit;
     if (!traversal_begin(&r, map, way)) {
         walk_texel(map, way, m);
+        return;
+    }
+    pace = tyni_mini(pace, r.steps / PACES);
+    if (pace > 1) {
+        walk_paces(isa, &r, pace, way, m);
         return;
     }
     for (int32_t k = 0; k < r.steps; k += 32) {
@@ -205,7 +229,7 @@ static void walk_texels(int32_t isa, const tyni_map *map, const track *way, tyni
     }
 }
 
-void tyni_walk_ray(int32_t isa, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, float *light)
+void tyni_walk_ray(int32_t isa, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, int32_t pace, float *light)
 {
     /* parts of the ray that no map has covered yet */
     float part[TYN_MAX_MAPS + 1][2];
@@ -222,7 +246,7 @@ void tyni_walk_ray(int32_t isa, const tyni_lamp *lamp, const tyni_integral *it, 
             float end = part[n][1];
             if (!(part[n][0] < end) || !track_begin(&k, &lamp->maps[i], v, part[n]))
                 continue;
-            walk_texels(isa, &lamp->maps[i], &k, &m);
+            walk_texels(isa, &lamp->maps[i], pace, &k, &m);
             tyni_meter_lit(&m, lamp->outside, k.t[1]);
             part[n][1] = k.t[0];
             if (k.t[1] < end && parts <= TYN_MAX_MAPS) {
@@ -291,7 +315,7 @@ static void colour_in(const tyni_lamp *lamp, const tyni_medium *medium, const ty
         light[c] *= mix[c] * lamp->colour[c];
 }
 
-void tyni_walk_pixel(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s,
+void tyni_walk_pixel(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float s, int32_t pace,
                      float light[3])
 {
     static const int32_t channels[3] = {0, 1, 2};
@@ -301,7 +325,7 @@ void tyni_walk_pixel(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medi
     if (!tyni_view_clip(lamp, v, &t0, &t1))
         return;
     tyni_integral_begin(&it, medium, lamp, v, t0, t1, channels, 3);
-    tyni_walk_ray(isa, lamp, &it, v, light);
+    tyni_walk_ray(isa, lamp, &it, v, pace, light);
     colour_in(lamp, medium, v, light);
 }
 

@@ -53,6 +53,26 @@ static TYNI_V_TARGET void TYNI_V(walk_states)(const traversal *r, int32_t k, sta
     lit->out[1] = out1;
 }
 
+/* Whether the middles of paces k .. k + 31 are lit. */
+static TYNI_V_TARGET void TYNI_V(walk_paces)(const traversal *r, int32_t pace, int32_t k, uint32_t *lit)
+{
+    const tyni_texels *t = r->texels;
+    const tyni_course *c = &r->course;
+    const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
+    const int32_t way = c->sign > 0.0f ? along : -along, base = r->first * along, most = (c->across ? t->height : t->width) - 1;
+    uint32_t word = 0;
+    for (int32_t i = 0; i < 32 && (k + i) * pace < r->steps; i += v_n) {
+        const v_float middle = (v_to_float(v_iadd(v_iset(k + i), v_index())) + 0.5f) * (float)pace;
+        const v_float at = v_clamp(middle, v_set(c->from), v_set(c->to));
+        const v_int step = v_imin(v_trunc(at), v_iset(r->steps - 1));
+        const v_int beside = v_imin(v_imax(v_floori(c->minor + c->slope * at), v_iset(0)), v_iset(most));
+        const v_int texel = v_iadd(v_iadd(v_imul(step, v_iset(way)), v_iset(base)), v_imul(beside, v_iset(aside)));
+        const v_float z = v_max(r->z + at * r->dz, v_set(0.0f));
+        word |= v_word(v_ge(z, TYNI_V(door_texels)(t, texel))) << i;
+    }
+    *lit = word;
+}
+
 /* Which steps are lit: each is looked up in the first map that covers it. */
 TYNI_V_INLINE v_mask TYNI_V(walk_lit)(const tyni_lamp *lamp, const tyni_sight *v, v_float t, v_mask wanted)
 {
