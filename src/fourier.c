@@ -211,8 +211,7 @@ static void store(mill *m)
         uint16_t share = (uint16_t)(tyni_clampf(m->share[i] * inverse, 0.0f, 1.0f) * 65535.0f + 0.5f);
         memcpy(out, &constant, sizeof constant);
         memcpy(out + 2, &share, sizeof share);
-        for (int32_t k = 0; k < f->bases; k++)
-            out[4 + k] = (uint8_t)tyni_floori(tyni_clampf(sum[k] * part, -127.0f, 127.0f) + 0.5f);
+        TYNI_LANES_CALL(f->isa, fourier_bytes, (sum, part, f->bases, out + 4));
     }
 }
 
@@ -278,7 +277,7 @@ static void grind(mill *m, tyni_columns *c)
         if (!(to > from))
             continue;
         if (kind == 2)
-            TYNI_LANES_CALL(f->isa, fourier_waves, (tyni_fourier_z(f, m->shelf, (float)q - 0.5f), f->bases / 2, m->wave));
+            TYNI_LANES_CALL(f->isa, fourier_waves, (f, m->shelf, q, m->wave));
         while (m->cell < f->columns) {
             float end = tyni_minf(to, m->to);
             if (end > from)

@@ -78,22 +78,8 @@ static inline float tyni_fourier_cells(const tyni_shelf *s, float x)
     return x * (s->far_share + (s->near_share > 0.0f ? s->near_share * tyni_num_fog(s->density * x) : 0.0f));
 }
 
-/* z of a position between knots a and a + 1. */
-static inline float tyni_fourier_z_between(const tyni_fourier *f, const tyni_shelf *s, int32_t a, float position)
-{
-    float low = (float)s->knot[a], high = (float)s->knot[a + 1], part = 0.5f;
-    if (high > low)
-        part = tyni_minf((position - low) / (high - low), 1.0f);
-    return f->margin + (1.0f - 2.0f * f->margin) / (float)TYNI_FOURIER_KNOTS * ((float)a + part);
-}
-
-static inline float tyni_fourier_z(const tyni_fourier *f, const tyni_shelf *s, float position)
-{
-    int32_t a = 0;
-    for (int32_t half = TYNI_FOURIER_KNOTS / 2; half; half >>= 1)
-        a += (float)s->knot[a + half] <= position ? half : 0;
-    return tyni_fourier_z_between(f, s, a, position);
-}
+#define TYNI_KERNEL "knot_kernel.h"
+#include "lanes/each.h"
 
 /* What the rays of a slice are at most and at least: see tyni_lookup_ray. */
 typedef struct tyni_fourier_range {

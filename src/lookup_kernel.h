@@ -25,9 +25,7 @@ TYNI_V_INLINE void TYNI_V(lookup_factors)(const tyni_fourier *f, float z, int16_
 /* z of the ray through p of the slice's line */
 TYNI_V_INLINE float TYNI_V(lookup_z)(const tyni_fourier *f, const tyni_shelf *s, float p)
 {
-    const float position = tyni_clampf((p - s->p_start) * s->p_scale, 0.0f, 65534.0f);
-    const uint32_t low = v_above16(s->knot, (uint32_t)position), high = v_above16(s->knot + 32, (uint32_t)position);
-    return tyni_fourier_z_between(f, s, low ? tyni_ctz32(low) - 1 : high ? 31 + tyni_ctz32(high) : 63, position);
+    return TYNI_V(fourier_z)(f, s, tyni_clampf((p - s->p_start) * s->p_scale, 0.0f, 65534.0f));
 }
 
 /* What a ray gets from its slice's row: of the stored column where it ends, and then of the one before, `count` sets from
