@@ -343,3 +343,10 @@ uint64_t rig_hash(const void *data, size_t size)
         hash = (hash ^ bytes[i]) * 0x100000001b3u;
     return hash;
 }
+
+double rig_levels(tyn_format format)
+{
+    return format == TYN_DEPTH_U16 ? 65535.0 : format == TYN_DEPTH_U24 ? 16777215.0 : 0.0;
+}
+
+/* ---- scene depth, written and read again in double precision ---------------------------------------------------------- */

@@ -68,4 +68,7 @@ double rig_psnr(const uint8_t *a, const uint8_t *b, size_t pixels);
 /* FNV-1a, 64 bits. */
 uint64_t rig_hash(const void *data, size_t size);
 
+/* The largest number of a depth format. */
+double rig_levels(tyn_format format);
+
 #endif

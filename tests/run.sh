@@ -7,14 +7,14 @@ export B CC CFLAGS MAKE
 
 # The longest of them beside all others: there are two cores.
 {
-    "$B/tests" accuracy art workers fourier door >"$B/long.log" 2>&1
+    "$B/tests" accuracy art workers fourier door door_maps door_windows >"$B/long.log" 2>&1
     echo $? >"$B/long.status"
     for script in proofs proofs_install; do
         sh tests/$script.sh >"$B/$script.log" 2>&1
         echo $? >"$B/$script.status"
     done
 } &
-part "$B/tests" -accuracy -art -workers -fourier -door
+part "$B/tests" -accuracy -art -workers -fourier -door -door_maps -door_windows
 for script in proofs_calls tool post; do
     part sh tests/$script.sh
 done

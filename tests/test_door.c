@@ -12,11 +12,6 @@ enum { W = 40, H = 30, PIXELS = W * H };
 
 static const tyn_format depth_formats[3] = {TYN_DEPTH_F32, TYN_DEPTH_U16, TYN_DEPTH_U24};
 
-static double levels_of(tyn_format format)
-{
-    return format == TYN_DEPTH_U16 ? 65535.0 : format == TYN_DEPTH_U24 ? 16777215.0 : 0.0;
-}
-
 /* ---- scene depth, written and read again in double precision ---------------------------------------------------------- */
 
 static void planes(const tyn_depth_coding *coding, const tyn_camera *camera, double plane[2])
@@ -47,7 +42,7 @@ static double encode(const tyn_depth_coding *coding, tyn_format format, const ty
         n = (depth - plane[0]) / (plane[1] - plane[0]);
     else
         n = (1 / depth - 1 / plane[0]) / (1 / plane[1] - 1 / plane[0]);
-    return (a + n * (b - a)) * (levels_of(format) > 0 ? levels_of(format) : 1);
+    return (a + n * (b - a)) * (rig_levels(format) > 0 ? rig_levels(format) : 1);
 }
 
 static double decode(const tyn_depth_coding *coding, tyn_format format, const tyn_camera *camera, int i, double value)
@@ -60,7 +55,7 @@ static double decode(const tyn_depth_coding *coding, tyn_format format, const ty
         return value * scale / length_of(camera, i);
     planes(coding, camera, plane);
     b = a == 0 && b == 0 ? 1 : b;
-    n = (value / (levels_of(format) > 0 ? levels_of(format) : 1) - a) / (b - a);
+    n = (value / (rig_levels(format) > 0 ? rig_levels(format) : 1) - a) / (b - a);
     if (camera->kind == TYN_CAMERA_ORTHOGRAPHIC)
         return plane[0] + n * (plane[1] - plane[0]);
     return 1 / (1 / plane[0] + n * (1 / plane[1] - 1 / plane[0]));
@@ -70,7 +65,7 @@ static double decode(const tyn_depth_coding *coding, tyn_format format, const ty
 static double put(const tyn_image *image, int i, double value)
 {
     char *row = (char *)image->pixels + image->stride * (i / W);
-    double levels = levels_of(image->format);
+    double levels = rig_levels(image->format);
     uint32_t bits;
     if (levels <= 0)
         return (double)(((float *)(void *)row)[i % W] = (float)value);
@@ -217,8 +212,8 @@ static void test_odd(void)
             check_odd(r, &coding, depth_formats[f], 0, 0, &rig_ways[way]);
             coding.has_sky = 1;
             check_odd(r, &coding, depth_formats[f], 0, 1, &rig_ways[way]);
-            coding.sky = (float)levels_of(depth_formats[f]);
-            check_odd(r, &coding, depth_formats[f], levels_of(depth_formats[f]), 1, &rig_ways[way]);
+            coding.sky = (float)rig_levels(depth_formats[f]);
+            check_odd(r, &coding, depth_formats[f], rig_levels(depth_formats[f]), 1, &rig_ways[way]);
         }
         /* at and beyond the planes */
         memset(&coding, 0, sizeof coding);
@@ -255,459 +250,6 @@ static void test_alone(void)
         CHECK(i % 3 == 0 || memcmp(r->scatter + 3 * i, first + 3 * i, 3 * sizeof *first) == 0);
     rig_free(r);
 }
-
-/* ---- shadow maps ----------------------------------------------------------------------------------------------------- */
-
-typedef struct map_case {
-    tyn_map_coding coding;
-    float at_near, at_far, scale;
-    int clear; /* linear: what is stored where there is nothing: 0: all ones or infinity; 1: at_far */
-} map_case;
-
-static const map_case map_cases[] = {
-    {TYN_MAP_REVERSED, 0, 0, 0, 0},  {TYN_MAP_PROJECTED, 0, 0, 0, 0},    {TYN_MAP_PROJECTED, 0, 1, 0, 0},
-    {TYN_MAP_PROJECTED, 1, 0, 0, 0}, {TYN_MAP_PROJECTED, -1, 1, 0, 0},   {TYN_MAP_PROJECTED, 0.25f, 0.75f, 0, 0},
-    {TYN_MAP_LINEAR, 0, 60, 1, 0},   {TYN_MAP_LINEAR, 0, 60, 0.002f, 1},
-};
-enum { MAP_CASES = (int)(sizeof map_cases / sizeof *map_cases), MAP = 128 };
-
-/* A copy of a map in another format and coding. `same` becomes what it then says, in the first convention. */
-typedef struct recoded {
-    tyn_shadow shadow;
-    guard texels;
-    float same[MAP * MAP];
-} recoded;
-
-static double near_end(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static void recode(recoded *to, const tyn_shadow *from, const map_case *c, tyn_format format, int upside_down)
-{
-    const float *depth = from->depth;
-    const double levels = levels_of(format);
-    int parallel = from->matrix[12] == 0 && from->matrix[13] == 0 && from->matrix[14] == 0;
-    double a = (double)c->at_near, b = a == 0 && c->at_far == 0 ? 1 : (double)c->at_far;
-    double scale = c->scale > 0 ? (double)c->scale : 1, unit = levels > 0 ? levels : 1;
-    double constant = (double)from->matrix[11]; /* of a perspective map, whose Z is that and nothing else */
-    /* integers hold 0 .. 1, and distances in steps that reach far enough */
-    if (levels > 0 && a < 0)
-        a = 0;
-    if (levels > 0 && scale >= 1)
-        scale = 0.001;
-    to->shadow = *from;
-    to->shadow.format = format;
-    to->shadow.coding = c->coding;
-    to->shadow.at_near = (float)a;
-    to->shadow.at_far = c->coding == TYN_MAP_LINEAR && !parallel && !c->clear ? 0 : a == 0 && b == 1 ? c->at_far : (float)b;
-    to->shadow.scale = (float)scale;
-    scale = (double)(float)scale;
-    to->texels = guard_new(MAP, MAP, format, upside_down);
-    to->shadow.depth = to->texels.image.pixels;
-    to->shadow.stride = to->texels.image.stride;
-    for (int i = 0; i < 4; i++) {
-        double z = (double)from->matrix[8 + i], w = (double)from->matrix[12 + i];
-        if (c->coding == TYN_MAP_PROJECTED || (c->coding == TYN_MAP_LINEAR && parallel))
-            z = b * w + (a - b) * z;
-        else if (c->coding == TYN_MAP_LINEAR)
-            z = (double)test_random_float(-1, 1); /* not used */
-        to->shadow.matrix[8 + i] = (float)z;
-    }
-    for (int i = 0; i < MAP * MAP; i++) {
-        double z = near_end((double)depth[i], 1), value, back;
-        char *row = (char *)to->texels.image.pixels + to->texels.image.stride * (i / MAP);
-        if (c->coding == TYN_MAP_REVERSED)
-            value = z * unit;
-        else if (c->coding == TYN_MAP_PROJECTED)
-            value = (b + (a - b) * z) * unit;
-        else if (parallel)
-            value = (b + (a - b) * z) / scale;
-        else
-            value = z > 0 ? constant / z / scale : c->clear ? b / scale * 1.0001 : levels > 0 ? levels : HUGE_VAL;
-        if (levels > 0) {
-            uint16_t bits = (uint16_t)(value < 0 ? 0 : value > levels ? levels : value + 0.5);
-            ((uint16_t *)(void *)row)[i % MAP] = bits;
-            value = (double)bits;
-        } else {
-            float stored = (float)value;
-            ((float *)(void *)row)[i % MAP] = stored;
-            value = (double)stored;
-        }
-        if (c->coding == TYN_MAP_LINEAR && !parallel)
-            back = (c->clear && value * scale >= b) || (levels > 0 && value >= levels) ? 0 : constant / (value * scale);
-        else
-            back = c->coding == TYN_MAP_REVERSED ? value / unit
-                                                 : (value / (c->coding == TYN_MAP_LINEAR ? 1 / scale : unit) - b) / (a - b);
-        to->same[i] = (float)back;
-    }
-}
-
-/* The scatter of a rig from its maps recoded is that from the same depths in the first convention. */
-static void check_maps(rig *r, const map_case *c, tyn_format format, int upside_down, const rig_way *way, double tolerance)
-{
-    static recoded map[6];
-    static float plain[3 * PIXELS], original[3 * PIXELS];
-    tyn_shadow more[5];
-    tyn_config config = rig_way_config(r, way);
-    tyn_frame frame = rig_frame(r);
-    tyn_light light = r->light[0];
-    int count = light.more_count + 1;
-    config.steps = 40;
-    CHECK(rig_render(r, &config, &frame) == TYN_OK);
-    memcpy(original, r->scatter, sizeof original);
-    frame.lights = &light;
-    for (int i = 0; i < count; i++)
-        recode(&map[i], i ? &r->light[0].more[i - 1] : &r->light[0].shadow, c, format, upside_down);
-    light.shadow.depth = map[0].same;
-    for (int i = 1; i < count; i++) {
-        more[i - 1] = r->light[0].more[i - 1];
-        more[i - 1].depth = map[i].same;
-    }
-    light.more = count > 1 ? more : NULL;
-    CHECK(rig_render(r, &config, &frame) == TYN_OK);
-    memcpy(plain, r->scatter, sizeof plain);
-    light.shadow = map[0].shadow;
-    for (int i = 1; i < count; i++)
-        more[i - 1] = map[i].shadow;
-    CHECK(rig_render(r, &config, &frame) == TYN_OK);
-    CHECK_NEAR(rig_l1(r->scatter, plain, 3 * PIXELS), 0, 5e-4);
-    CHECK_NEAR(rig_l1(r->scatter, original, 3 * PIXELS), 0, tolerance);
-    for (int i = 0; i < count; i++)
-        guard_free(&map[i].texels);
-}
-
-static void test_shadows(void)
-{
-    static const char *const names[] = {"sun off the left", "lamp off the left", "bulb off the right"};
-    TEST("every format and coding of shadow maps");
-    for (int n = 0; n < 3; n++) {
-        rig *r = rig_stock(names[n], W, H, MAP);
-        for (int c = 0; c < MAP_CASES; c++)
-            for (int f = 0; f < 2; f++)
-                for (int way = 0; way < (f ? 2 : RIG_WAYS - 1); way++)
-                    check_maps(r, &map_cases[c], f ? TYN_DEPTH_U16 : TYN_DEPTH_F32, (c + way) & 1, &rig_ways[way],
-                               f ? 3e-2 : 5e-4);
-        rig_free(r);
-    }
-}
-
-/* Texels that are no depths: NaN and whatever lies beyond the far end are nothing, what lies before the near end is there. */
-static void test_odd_texels(void)
-{
-    static const map_case *const cases[] = {&map_cases[0], &map_cases[1], &map_cases[4], &map_cases[6]};
-    static recoded map;
-    static const char *const names[] = {"sun off the left", "lamp off the left"};
-    TEST("texels that are no depths");
-    for (int n = 0; n < 2; n++) {
-        rig *r = rig_stock(names[n], W, H, MAP);
-        for (int c = 0; c < 4; c++)
-            for (int way = 0; way < RIG_WAYS - 1; way++) {
-                tyn_config config = rig_way_config(r, &rig_ways[way]);
-                tyn_frame frame = rig_frame(r);
-                tyn_light light = r->light[0];
-                static float first[3 * PIXELS];
-                float *row;
-                int rising = cases[c]->coding != TYN_MAP_REVERSED; /* stored values grow with the distance */
-                recode(&map, &r->light[0].shadow, cases[c], TYN_DEPTH_F32, 0);
-                light.shadow = map.shadow;
-                frame.lights = &light;
-                for (int i = 0; i < MAP * MAP; i++) {
-                    static const float odd[] = {(float)NAN, HUGE_VALF, -HUGE_VALF, 3e38f, -3e38f};
-                    int k = (int)(test_random() % 40);
-                    row = (float *)(void *)((char *)map.texels.image.pixels + map.texels.image.stride * (i / MAP));
-                    if (k >= 5)
-                        continue;
-                    row[i % MAP] = odd[k];
-                    map.same[i] = k == 0 || (k % 2 == 1) == rising ? 0 : 1;
-                    if (cases[c]->coding == TYN_MAP_LINEAR && n == 1)
-                        map.same[i] = 0; /* no distance is negative */
-                }
-                config.steps = 40;
-                CHECK(rig_render(r, &config, &frame) == TYN_OK);
-                memcpy(first, r->scatter, sizeof first);
-                for (int i = 0; i < 3 * PIXELS; i++)
-                    CHECK(first[i] >= 0 && first[i] < 1e6f);
-                light.shadow = r->light[0].shadow;
-                light.shadow.depth = map.same;
-                CHECK(rig_render(r, &config, &frame) == TYN_OK);
-                CHECK_NEAR(rig_l1(r->scatter, first, 3 * PIXELS), 0, 5e-4);
-                guard_free(&map.texels);
-            }
-        rig_free(r);
-    }
-}
-
-/* A window of a map as a map of its own: the same texels, where they lie. */
-static tyn_shadow window(const tyn_shadow *from, int x, int y, int width, int height)
-{
-    tyn_shadow s = *from;
-    const float n = (float)from->size;
-    for (int i = 0; i < 4; i++) {
-        s.matrix[i] = (from->matrix[i] * n - (float)x * from->matrix[12 + i]) / (float)width;
-        s.matrix[4 + i] = (from->matrix[4 + i] * n - (float)y * from->matrix[12 + i]) / (float)height;
-    }
-    s.depth = (const float *)from->depth + (ptrdiff_t)y * from->size + x;
-    s.stride = (ptrdiff_t)from->size * (ptrdiff_t)sizeof(float);
-    s.size = width;
-    s.height = height;
-    return s;
-}
-
-static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
-{
-    static float one[3 * PIXELS];
-    for (int way = 0; way < RIG_WAYS - 1; way++) {
-        tyn_config config = rig_way_config(r, &rig_ways[way]);
-        tyn_frame frame = rig_frame(r);
-        tyn_light light = r->light[0];
-        double most = 0, worst = 0;
-        config.steps = 40;
-        CHECK(rig_render(r, &config, &frame) == TYN_OK);
-        memcpy(one, r->scatter, sizeof one);
-        config.maps = count;
-        light.shadow = maps[0];
-        light.more = maps + 1;
-        light.more_count = count - 1;
-        frame.lights = &light;
-        CHECK(rig_render(r, &config, &frame) == TYN_OK);
-        for (int i = 0; i < 3 * PIXELS; i++) {
-            most = fmax(most, (double)one[i]);
-            worst = fmax(worst, fabs((double)one[i] - (double)r->scatter[i]));
-        }
-        /* ED10's lines are not stretched: at a lamp in view they have many samples to a pixel, and which of these rays cross so
-         * few columns that they are walked hangs on how many pieces the columns are in. One pixel, beside the lamp. */
-        /* And in what order columns come hangs on the pieces: prefiltered sums round in other places. */
-        CHECK_NEAR(worst / most, 0,
-                   config.gather == TYN_GATHER_ED10          ? 0.04
-                   : config.method >= TYN_METHOD_PREFILTERED ? 2 * tolerance
-                                                             : tolerance);
-    }
-}
-
-/* Maps that overlap, tile or nest, all with the texels of one: no border shows, whatever lies where. */
-static void test_windows(void)
-{
-    static const char *const names[] = {"sun off the left", "sun behind the camera", "lamp off the left", "lamp in view"};
-    TEST("up to 8 overlapping maps are as the one they were cut from");
-    for (int n = 0; n < 4; n++) {
-        rig *r = rig_stock(names[n], W, H, MAP);
-        const tyn_shadow *big = &r->light[0].shadow;
-        tyn_shadow maps[8];
-        for (int turn = 0; turn < 6; turn++) { /* anywhere */
-            int count = 2 + (int)(test_random() % 7);
-            for (int i = 0; i < count - 1; i++) {
-                int w = 1 + (int)(test_random() % MAP), h = 1 + (int)(test_random() % MAP);
-                maps[i] = window(big, (int)(test_random() % (uint32_t)(MAP + 1 - w)),
-                                 (int)(test_random() % (uint32_t)(MAP + 1 - h)), w, h);
-            }
-            maps[count - 1] = *big;
-            check_windows(r, maps, count, 2e-3);
-        }
-        for (int i = 0; i < 7; i++) /* nested: each way has most pieces */
-            maps[i] = window(big, 56 - 8 * i, 56 - 8 * i, 16 + 16 * i, 16 + 16 * i);
-        maps[7] = *big;
-        check_windows(r, maps, 8, 2e-3);
-        for (int i = 0; i < 8; i++) /* tiles, wider than high */
-            maps[i] = window(big, 64 * (i & 1), 32 * (i >> 1), 64, 32);
-        check_windows(r, maps, 8, 2e-3);
-        rig_free(r);
-    }
-}
-
-/* Draws the rig's scene into maps. */
-static void draw(const rig *r, tyn_shadow *maps, int count)
-{
-    tyn_raster_config config = {MAP, MAP, 0, 0, 0};
-    tyn_raster *raster = NULL;
-    size_t bytes = 0;
-    void *block;
-    CHECK(tyn_raster_measure(&config, &bytes) == TYN_OK);
-    block = rig_block(bytes);
-    CHECK(block && tyn_raster_init(&raster, &config, block, bytes) == TYN_OK);
-    for (int i = 0; i < count; i++) {
-        float *texels = calloc(MAP * MAP, sizeof *texels);
-        maps[i].depth = texels;
-        CHECK(texels && tyn_raster_shadow(raster, &maps[i], texels, r->mesh, r->meshes, NULL, NULL, NULL, NULL) == TYN_OK);
-    }
-    free(block);
-}
-
-/* To the oracle, relative. */
-static double miss(const rig *r, const double *truth)
-{
-    double gap = 0, sum = 0;
-    for (int i = 0; i < 3 * PIXELS; i++) {
-        gap += fabs((double)r->scatter[i] - truth[i]);
-        sum += truth[i];
-    }
-    return gap / sum;
-}
-
-/* Cascades with texels of their own, each half as wide as the next: nearer to the truth than the widest alone. And maps that
- * are not square. */
-static void test_cascades(void)
-{
-    static const char *const names[] = {"sun off the left", "lamp off the left"};
-    static double truth[3 * PIXELS];
-    TEST("8 cascades, and a map that is not square, against the oracle");
-    for (int n = 0; n < 2; n++) {
-        oracle_scene *scene = stock_new(names[n], W, H);
-        rig *r = rig_stock(names[n], W, H, MAP);
-        tyn_shadow maps[8];
-        CHECK(scene && oracle_prepare(scene));
-        for (int i = 0; i < PIXELS; i++) {
-            oracle_pixel pixel;
-            oracle_trace(scene, i % W + 0.5, i / W + 0.5, &pixel);
-            memcpy(truth + 3 * i, pixel.scatter, sizeof pixel.scatter);
-        }
-        for (int i = 0; i < 8; i++) {
-            float width = MAP;
-            for (int k = i; k < 7; k++)
-                width *= 0.75f;
-            maps[i] =
-                window(&r->light[0].shadow, (int)(0.5f * (MAP - width)), (int)(0.5f * (MAP - width)), (int)width, (int)width);
-            maps[i].size = MAP;
-            maps[i].height = MAP;
-            maps[i].stride = 0;
-        }
-        draw(r, maps, 8);
-        for (int way = 0; way < RIG_WAYS - 1; way++) {
-            tyn_config config = rig_way_config(r, &rig_ways[way]);
-            tyn_frame frame = rig_frame(r);
-            tyn_light light = r->light[0];
-            double one;
-            config.steps = 200;
-            CHECK(rig_render(r, &config, &frame) == TYN_OK);
-            one = miss(r, truth);
-            frame.lights = &light;
-            config.maps = 8;
-            light.shadow = maps[0];
-            light.more = maps + 1;
-            light.more_count = 7;
-            CHECK(rig_render(r, &config, &frame) == TYN_OK);
-            /* prefiltered rows ring a little differently with every threshold */
-            CHECK_NEAR(miss(r, truth), 0, config.method >= TYN_METHOD_PREFILTERED ? one + 0.0007 : one);
-        }
-        for (int i = 0; i < 8; i++)
-            free((void *)(uintptr_t)maps[i].depth);
-        maps[0] = maps[1] = r->light[0].shadow;
-        maps[0].height = MAP / 2;
-        maps[1].size = MAP / 2;
-        maps[1].height = MAP;
-        draw(r, maps, 2);
-        for (int k = 0; k < 2; k++)
-            for (int way = 0; way < RIG_WAYS - 1; way++) {
-                tyn_config config = rig_way_config(r, &rig_ways[way]);
-                tyn_frame frame = rig_frame(r);
-                tyn_light light = r->light[0];
-                double one;
-                config.steps = 200;
-                CHECK(rig_render(r, &config, &frame) == TYN_OK);
-                one = miss(r, truth);
-                light.shadow = maps[k];
-                frame.lights = &light;
-                CHECK(rig_render(r, &config, &frame) == TYN_OK);
-                CHECK_NEAR(miss(r, truth), 0, 2.5 * one + 1e-3);
-            }
-        free((void *)(uintptr_t)maps[0].depth);
-        free((void *)(uintptr_t)maps[1].depth);
-        rig_free(r);
-        oracle_release(scene);
-        model_free(scene);
-    }
-}
-
-/* A bias moves shadows away from what casts them: by so much light as that much air gets, whatever the coding. */
-static void test_bias(void)
-{
-    static const char *const names[] = {"sun off the left", "lamp off the left"};
-    TEST("a depth bias in texels lets in light, the same in every coding");
-    for (int n = 0; n < 2; n++) {
-        rig *r = rig_stock(names[n], W, H, MAP);
-        tyn_config config = rig_config(r, TYN_METHOD_MARCH, TYN_RAYS_WORDS);
-        static recoded map;
-        static float plain[3 * PIXELS];
-        double last = -1;
-        for (int bias = 0; bias <= 32; bias = bias ? 2 * bias : 1) {
-            tyn_frame frame = rig_frame(r);
-            tyn_light light = r->light[0];
-            double sum = 0;
-            light.shadow.bias = (float)bias;
-            frame.lights = &light;
-            CHECK(rig_render(r, &config, &frame) == TYN_OK);
-            memcpy(plain, r->scatter, sizeof plain);
-            for (int i = 0; i < 3 * PIXELS; i++)
-                sum += (double)plain[i];
-            CHECK(sum > last && (last < 0 || sum < 1.5 * last));
-            last = sum;
-            for (int c = 1; c < MAP_CASES; c++) {
-                recode(&map, &r->light[0].shadow, &map_cases[c], TYN_DEPTH_F32, c & 1);
-                light.shadow = map.shadow;
-                light.shadow.bias = (float)bias;
-                CHECK(rig_render(r, &config, &frame) == TYN_OK);
-                CHECK_NEAR(rig_l1(r->scatter, plain, 3 * PIXELS), 0, 1e-3);
-                guard_free(&map.texels);
-            }
-        }
-        rig_free(r);
-    }
-}
-
-/* Surfaces see the same shadows through any coding. */
-static void test_surfaces(void)
-{
-    static const char *const names[] = {"sun off the left", "lamp off the left", "bulb off the right"};
-    static recoded map[6];
-    static float plain[3 * PIXELS], colour[3 * PIXELS], depth[PIXELS];
-    TEST("surfaces under maps of every format and coding");
-    for (int n = 0; n < 3; n++) {
-        rig *r = rig_stock(names[n], W, H, MAP);
-        tyn_raster_config config = {W, H, 0, 0, 0};
-        tyn_raster *raster = NULL;
-        tyn_light light = r->light[0];
-        tyn_shadow more[5];
-        tyn_surface surface;
-        size_t bytes = 0;
-        void *block;
-        int count = light.more_count + 1;
-        CHECK(tyn_raster_measure(&config, &bytes) == TYN_OK);
-        block = rig_block(bytes);
-        CHECK(block && tyn_raster_init(&raster, &config, block, bytes) == TYN_OK);
-        memset(&surface, 0, sizeof surface);
-        surface.camera = r->camera;
-        surface.meshes = r->mesh;
-        surface.mesh_count = r->meshes;
-        surface.lights = &light;
-        surface.light_count = 1;
-        surface.colour.pixels = plain;
-        surface.depth.pixels = depth;
-        surface.colour.width = surface.depth.width = W;
-        surface.colour.height = surface.depth.height = H;
-        surface.colour.format = TYN_RGB_F32;
-        surface.depth.format = TYN_DEPTH_F32;
-        CHECK(tyn_raster_surface(raster, &surface) == TYN_OK);
-        surface.colour.pixels = colour;
-        for (int c = 0; c < MAP_CASES; c++)
-            for (int f = 0; f < 2; f++) {
-                for (int i = 0; i < count; i++)
-                    recode(&map[i], i ? &r->light[0].more[i - 1] : &r->light[0].shadow, &map_cases[c],
-                           f ? TYN_DEPTH_U16 : TYN_DEPTH_F32, c & 1);
-                light.shadow = map[0].shadow;
-                for (int i = 1; i < count; i++)
-                    more[i - 1] = map[i].shadow;
-                light.more = count > 1 ? more : NULL;
-                CHECK(tyn_raster_surface(raster, &surface) == TYN_OK);
-                CHECK_NEAR(rig_l1(colour, plain, 3 * PIXELS), 0, f ? 3e-2 : 1e-3);
-                for (int i = 0; i < count; i++)
-                    guard_free(&map[i].texels);
-            }
-        free(block);
-        rig_free(r);
-    }
-}
-
-/* ---- light and transmittance alone ----------------------------------------------------------------------------------- */
 
 static void test_transmittance(void)
 {
@@ -833,12 +375,6 @@ void test_door(void)
     test_depths();
     test_odd();
     test_alone();
-    test_shadows();
-    test_odd_texels();
-    test_windows();
-    test_cascades();
-    test_bias();
-    test_surfaces();
     test_transmittance();
     test_statuses();
 }
