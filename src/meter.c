@@ -16,7 +16,7 @@ void tyni_meter_begin(tyni_meter *m, const tyni_integral *integral, const tyni_l
 }
 
 /* Parts in which a slide's or tint's colour is taken as one: one per texel crossed, about. */
-static int32_t colour_parts(const tyni_meter *m, float ta, float tb)
+static TYNI_NOINLINE int32_t colour_parts(const tyni_meter *m, float ta, float tb)
 {
     const tyni_lamp *lamp = m->lamp;
     float texels = 0.0f;
@@ -104,20 +104,18 @@ static void settle(tyni_meter *m)
 /* The end of a ray: shadows as strong as the frame wants them. */
 static void lift(tyni_meter *m)
 {
-    float lit[3], all[3];
+    float lit[3];
     if (m->lamp->lift == 0.0f)
         return;
     memcpy(lit, m->sum, sizeof *lit * (size_t)m->integral->count);
-    if (m->lamp->coloured) {
-        for (int32_t i = 0; i < m->integral->count; i++)
-            m->sum[i] = 0.0f;
-        coloured(m, m->integral->t0, m->integral->t1);
-        memcpy(all, m->sum, sizeof *all * (size_t)m->integral->count);
-    } else {
-        tyni_integral_at(m->integral, m->integral->t1, all);
-    }
     for (int32_t i = 0; i < m->integral->count; i++)
-        m->sum[i] = tyni_maxf(lit[i] + m->lamp->lift * (all[i] - lit[i]), 0.0f);
+        m->sum[i] = 0.0f;
+    if (m->lamp->coloured)
+        coloured(m, m->integral->t0, m->integral->t1);
+    else
+        tyni_integral_at(m->integral, m->integral->t1, m->sum);
+    for (int32_t i = 0; i < m->integral->count; i++)
+        m->sum[i] = tyni_maxf(lit[i] + m->lamp->lift * (m->sum[i] - lit[i]), 0.0f);
 }
 
 void tyni_meter_end(tyni_meter *m)

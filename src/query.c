@@ -30,7 +30,7 @@ typedef struct pass {
 } pass;
 
 /* The ray to a point, and how far the medium reaches along it; 0: the camera itself, or no point at all. */
-static float ray_of(const pass *p, const tyn_query_point *point, tyni_sight *v)
+static TYNI_NOINLINE float ray_of(const pass *p, const tyn_query_point *point, tyni_sight *v)
 {
     float length = tyni_view_sight(&p->view, point->x, point->y, v);
     if (!tyni_finite(point->x) || !tyni_finite(point->y) || !tyni_finite(length) || !tyni_vec_finite(v->o))
@@ -57,6 +57,19 @@ static void add_light(const pass *p, const tyn_light *light, int32_t first, int3
     }
 }
 
+/* Apart from the jobs: what only this needs is off the stack when rays are walked. */
+static TYNI_NOINLINE void begin_points(const pass *p, int32_t first, int32_t end)
+{
+    for (int32_t i = first; i < end; i++) {
+        tyni_sight v;
+        float s = ray_of(p, &p->points[i], &v);
+        for (int32_t c = 0; c < 3; c++) {
+            p->results[i].scatter[c] = 0.0f;
+            p->results[i].transmittance[c] = tyni_num_exp(-p->fog[c] * s);
+        }
+    }
+}
+
 static void points_job(void *argument, int32_t index, int32_t worker)
 {
     const pass *p = argument;
@@ -66,19 +79,13 @@ static void points_job(void *argument, int32_t index, int32_t worker)
         p->results[first].transmittance[0] = TWICE;
         return;
     }
-    for (int32_t i = first; i < end; i++) {
-        tyni_sight v;
-        float s = ray_of(p, &p->points[i], &v);
-        for (int32_t c = 0; c < 3; c++) {
-            p->results[i].scatter[c] = 0.0f;
-            p->results[i].transmittance[c] = tyni_num_exp(-p->fog[c] * s);
-        }
-    }
+    begin_points(p, first, end);
     for (int32_t i = 0; i < p->frame->light_count; i++)
         add_light(p, &p->frame->lights[i], first, end);
 }
 
-static tyn_status check(const tyn_frame *f, const tyn_query_point *points, const tyn_query_result *results, int32_t count)
+static TYNI_NOINLINE tyn_status check(const tyn_frame *f, const tyn_query_point *points, const tyn_query_result *results,
+                                      int32_t count)
 {
     tyn_status status = TYN_OK;
     if (!f || (count > 0 && (!points || !results)))

@@ -93,15 +93,15 @@ void tyni_slide_sample(const tyn_image *image, float s, float t, float rgb[3])
     float x = tyni_clampf(s - 0.5f, 0.0f, (float)(image->width - 1)),
           y = tyni_clampf(t - 0.5f, 0.0f, (float)(image->height - 1));
     int32_t i = (int32_t)x, j = (int32_t)y, i1 = tyni_mini(i + 1, image->width - 1), j1 = tyni_mini(j + 1, image->height - 1);
-    float fx = x - (float)i, fy = y - (float)j, a[3], b[3], c[3], d[3];
+    float fx = x - (float)i, fy = y - (float)j, a[3], b[3];
     texel(image, i, j, a);
     texel(image, i1, j, b);
-    texel(image, i, j1, c);
-    texel(image, i1, j1, d);
-    for (int32_t k = 0; k < 3; k++) {
-        float top = a[k] + (b[k] - a[k]) * fx, bottom = c[k] + (d[k] - c[k]) * fx;
-        rgb[k] = top + (bottom - top) * fy;
-    }
+    for (int32_t k = 0; k < 3; k++)
+        rgb[k] = a[k] + (b[k] - a[k]) * fx;
+    texel(image, i, j1, a);
+    texel(image, i1, j1, b);
+    for (int32_t k = 0; k < 3; k++)
+        rgb[k] += (a[k] + (b[k] - a[k]) * fx - rgb[k]) * fy;
 }
 
 int tyni_slide_colour(const tyni_slide *slides, int32_t count, tyni_vec3 p, float rgb[3])

@@ -34,7 +34,7 @@ static int on_map(const tyni_map *map, const tyni_sight *v, float t[2])
     return t[0] < t[1];
 }
 
-static int track_begin(track *k, const tyni_map *map, const tyni_sight *v, const float part[2])
+static TYNI_NOINLINE int track_begin(track *k, const tyni_map *map, const tyni_sight *v, const float part[2])
 {
     tyni_line lu = tyni_line_along(&map->u, v), lv = tyni_line_along(&map->v, v);
     tyni_line lz = tyni_line_along(&map->z, v), lw = tyni_line_along(&map->w, v);
@@ -76,7 +76,7 @@ typedef struct traversal {
 } traversal;
 
 /* 0: the course has no length, the ray stays in one texel. */
-static int traversal_begin(traversal *r, const tyni_map *map, const track *k)
+static TYNI_NOINLINE int traversal_begin(traversal *r, const tyni_map *map, const track *k)
 {
     float u[2], v[2], length;
     u[0] = k->u;
@@ -150,29 +150,31 @@ static float passes(float za, float zb, float z)
     return za != zb ? tyni_clampf((z - za) / (zb - za), 0.0f, 1.0f) : 0.0f;
 }
 
-/* Step k, in which something changes: what walk_states does, and where. */
-static void switch_in_step(const traversal *r, const track *way, int32_t k, const states *lit, int32_t bit, tyni_meter *m)
+/* Step k, in which something changes: what walk_states does, and at what t of its four states the ray is. Returns how many
+ * count. */
+static TYNI_NOINLINE int32_t times_in_step(const traversal *r, const track *way, int32_t k, const states *lit, int32_t bit,
+                                           float t[4])
 {
     const tyni_course *c = &r->course;
     int32_t major = r->first + (c->sign > 0.0f ? k : -k), most = (c->across ? r->texels->height : r->texels->width) - 1;
     float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * ((float)k + 1.0f), at[3];
-    int32_t minor[2];
+    int32_t minor[2], texels;
     minor[0] = tyni_clampi(tyni_floori(from), 0, most);
     minor[1] = tyni_clampi(tyni_floori(to), 0, most);
+    texels = minor[0] != minor[1] ? 2 : 1;
     at[0] = tyni_maxf((float)k, c->from);
     at[1] = at[2] = tyni_minf((float)k + 1.0f, c->to);
-    if (minor[0] != minor[1])
+    if (texels > 1)
         at[1] = tyni_clampf((float)k + ((float)tyni_maxi(minor[0], minor[1]) - from) * r->rise, at[0], at[2]);
-    for (int32_t i = 0; i < 2; i++) {
-        int in = lit->in[i] >> bit & 1, out = lit->out[i] >> bit & 1;
-        if ((in != m->outside) != m->on)
-            tyni_meter_lit(m, in, step_t(r, way, at[i]));
-        if (in != out) {
-            float z = tyni_texels_at(r->texels, c->across ? major : minor[i], c->across ? minor[i] : major);
+    for (int32_t i = 0; i < texels; i++) {
+        float z = tyni_texels_at(r->texels, c->across ? major : minor[i], c->across ? minor[i] : major);
+        t[2 * i] = t[2 * i + 1] = step_t(r, way, at[i]);
+        if ((lit->in[i] ^ lit->out[i]) >> bit & 1) {
             z = passes(r->z + at[i] * r->dz, r->z + at[i + 1] * r->dz, z);
-            tyni_meter_lit(m, out, step_t(r, way, at[i] + z * (at[i + 1] - at[i])));
+            t[2 * i + 1] = step_t(r, way, at[i] + z * (at[i + 1] - at[i]));
         }
     }
+    return 2 * texels;
 }
 
 static void walk_texel(const tyni_map *map, const track *way, tyni_meter *m)
@@ -187,45 +189,52 @@ static void walk_texel(const tyni_map *map, const track *way, tyni_meter *m)
 
 #define PACES 64 /* at least: rays over few texels are looked at closely */
 
-/* A texel in the middle of every `pace` steps stands for all of them. */
-static void walk_paces(int32_t isa, const traversal *r, int32_t pace, const track *way, tyni_meter *m)
+/* Steps k .. k + 31 and where they change. */
+static void walk_closely(int32_t isa, const traversal *r, int32_t k, const track *way, tyni_meter *m)
 {
-    int32_t count = (r->steps + pace - 1) / pace;
-    for (int32_t k = 0; k < count; k += 32) {
-        uint32_t before = (uint32_t)(m->on != m->outside), lit, changes;
-        TYNI_LANES_CALL(isa, walk_paces, (r, pace, k, &lit));
-        changes = lit ^ (lit << 1 | before);
-        if (count - k < 32)
-            changes &= (1u << (count - k)) - 1u;
-        for (; changes; changes &= changes - 1) {
-            int32_t bit = tyni_ctz32(changes);
-            tyni_meter_lit(m, lit >> bit & 1, step_t(r, way, (float)((k + bit) * pace)));
-        }
+    uint32_t before = (uint32_t)(m->on != m->outside), changes;
+    states lit;
+    float t[4];
+    TYNI_LANES_CALL(isa, walk_states, (r, k, &lit));
+    changes = (lit.in[0] ^ (lit.out[1] << 1 | before)) | (lit.in[0] ^ lit.out[0]) | (lit.out[0] ^ lit.in[1]);
+    changes |= lit.in[1] ^ lit.out[1];
+    if (r->steps - k < 32)
+        changes &= (1u << (r->steps - k)) - 1u;
+    for (; changes; changes &= changes - 1) {
+        int32_t bit = tyni_ctz32(changes), count = times_in_step(r, way, k + bit, &lit, bit, t);
+        for (int32_t i = 0; i < count; i++)
+            tyni_meter_lit(m, (i & 1 ? lit.out : lit.in)[i >> 1] >> bit & 1, t[i]);
+    }
+}
+
+/* Paces k .. k + 31 of `count`, each of `pace` steps: a texel in the middle stands for all of them. */
+static void walk_pacing(int32_t isa, const traversal *r, int32_t pace, int32_t k, const track *way, tyni_meter *m)
+{
+    uint32_t before = (uint32_t)(m->on != m->outside), lit, changes;
+    int32_t left = (r->steps + pace - 1) / pace - k;
+    TYNI_LANES_CALL(isa, walk_paces, (r, pace, k, &lit));
+    changes = lit ^ (lit << 1 | before);
+    if (left < 32)
+        changes &= (1u << left) - 1u;
+    for (; changes; changes &= changes - 1) {
+        int32_t bit = tyni_ctz32(changes);
+        tyni_meter_lit(m, lit >> bit & 1, step_t(r, way, (float)((k + bit) * pace)));
     }
 }
 
 static void walk_texels(int32_t isa, const tyni_map *map, int32_t pace, const track *way, tyni_meter *m)
 {
     traversal r;
-    states lit;
     if (!traversal_begin(&r, map, way)) {
         walk_texel(map, way, m);
         return;
     }
-    pace = tyni_mini(pace, r.steps / PACES);
-    if (pace > 1) {
-        walk_paces(isa, &r, pace, way, m);
-        return;
-    }
-    for (int32_t k = 0; k < r.steps; k += 32) {
-        uint32_t before = (uint32_t)(m->on != m->outside), changes;
-        TYNI_LANES_CALL(isa, walk_states, (&r, k, &lit));
-        changes = (lit.in[0] ^ (lit.out[1] << 1 | before)) | (lit.in[0] ^ lit.out[0]) | (lit.out[0] ^ lit.in[1]);
-        changes |= lit.in[1] ^ lit.out[1];
-        if (r.steps - k < 32)
-            changes &= (1u << (r.steps - k)) - 1u;
-        for (; changes; changes &= changes - 1)
-            switch_in_step(&r, way, k + tyni_ctz32(changes), &lit, tyni_ctz32(changes), m);
+    pace = tyni_clampi(r.steps / PACES, 1, pace);
+    for (int32_t k = 0; k * pace < r.steps; k += 32) {
+        if (pace > 1)
+            walk_pacing(isa, &r, pace, k, way, m);
+        else
+            walk_closely(isa, &r, k, way, m);
     }
 }
 
@@ -306,7 +315,7 @@ void tyni_walk_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medi
 }
 
 /* The light's colour and, of a sun, the phase function. */
-static void colour_in(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float light[3])
+static TYNI_NOINLINE void colour_in(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float light[3])
 {
     float mix[3] = {1.0f, 1.0f, 1.0f};
     if (lamp->kind == TYN_LIGHT_DIRECTIONAL)

@@ -2,7 +2,7 @@
 
 /* Steps k .. k + 31; what lies behind the last is anything. A ray behind the farthest depth is at it, so that where a texel has
  * no depth, 0, it is lit. */
-static TYNI_V_TARGET void TYNI_V(walk_states)(const traversal *r, int32_t k, states *lit)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_states)(const traversal *r, int32_t k, states *lit)
 {
     const tyni_texels *t = r->texels;
     const tyni_course *c = &r->course;
@@ -54,7 +54,7 @@ static TYNI_V_TARGET void TYNI_V(walk_states)(const traversal *r, int32_t k, sta
 }
 
 /* Whether the middles of paces k .. k + 31 are lit. */
-static TYNI_V_TARGET void TYNI_V(walk_paces)(const traversal *r, int32_t pace, int32_t k, uint32_t *lit)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_paces)(const traversal *r, int32_t pace, int32_t k, uint32_t *lit)
 {
     const tyni_texels *t = r->texels;
     const tyni_course *c = &r->course;
