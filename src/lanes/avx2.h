@@ -6,8 +6,8 @@
 
 #include "base.h"
 
-#define TYNI_AVX2_OP static inline __attribute__((always_inline, target("avx2")))
-#define TYNI_LANES_TARGET_avx2 __attribute__((target("avx2")))
+#define TYNI_AVX2_OP static inline __attribute__((always_inline, target("avx2,bmi,bmi2,popcnt")))
+#define TYNI_LANES_TARGET_avx2 __attribute__((target("avx2,bmi,bmi2,popcnt")))
 
 enum { tyni_avx2_n = 8 };
 typedef __m256 tyni_avx2_float;
@@ -231,9 +231,21 @@ TYNI_AVX2_OP void tyni_avx2_store_u8(uint8_t *p, __m256i x)
     const __m128i words = tyni_avx2_pack16(_mm256_and_si256(x, _mm256_set1_epi32(255)));
     _mm_storel_epi64((__m128i *)(void *)p, _mm_packus_epi16(words, words));
 }
+/* Loads and inserts: see avx512.h. */
+TYNI_AVX2_OP __m128i tyni_avx2_four(const uint8_t *base, const int32_t *bytes)
+{
+    int32_t x[4];
+    memcpy(&x[0], base + bytes[0], 4);
+    memcpy(&x[1], base + bytes[1], 4);
+    memcpy(&x[2], base + bytes[2], 4);
+    memcpy(&x[3], base + bytes[3], 4);
+    return _mm_setr_epi32(x[0], x[1], x[2], x[3]);
+}
 TYNI_AVX2_OP __m256i tyni_avx2_igather(const void *base, __m256i bytes)
 {
-    return _mm256_i32gather_epi32((const int *)base, bytes, 1);
+    int32_t at[8];
+    _mm256_storeu_si256((__m256i *)(void *)at, bytes);
+    return _mm256_inserti128_si256(_mm256_castsi128_si256(tyni_avx2_four(base, at)), tyni_avx2_four(base, at + 4), 1);
 }
 TYNI_AVX2_OP __m256 tyni_avx2_pick(const float *base, __m256i index)
 {
@@ -248,7 +260,7 @@ TYNI_AVX2_OP __m256 tyni_avx2_pick16(const float *base, __m256i index)
 }
 TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 {
-    return _mm256_i32gather_ps(base, index, 4);
+    return _mm256_castsi256_ps(tyni_avx2_igather(base, _mm256_slli_epi32(index, 2)));
 }
 TYNI_AVX2_OP __m256i tyni_avx2_igather_where(const void *base, __m256i bytes, __m256i m)
 {

@@ -6,7 +6,7 @@
 
 #include "base.h"
 
-#define TYNI_AVX512_FEATURES target("avx512f,avx512bw,avx512dq,avx512vl")
+#define TYNI_AVX512_FEATURES target("avx512f,avx512bw,avx512dq,avx512vl,bmi,bmi2,popcnt")
 #define TYNI_AVX512_OP static inline __attribute__((always_inline, TYNI_AVX512_FEATURES))
 #define TYNI_LANES_TARGET_avx512 __attribute__((TYNI_AVX512_FEATURES))
 

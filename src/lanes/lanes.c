@@ -20,17 +20,17 @@ static uint32_t saved(void)
 
 static int32_t here(void)
 {
-    const uint32_t osxsave = 1u << 27, avx = 1u << 28, avx2 = 1u << 5;
+    const uint32_t popcnt_osxsave_avx = 1u << 23 | 1u << 27 | 1u << 28, bmi_avx2_bmi2 = 1u << 3 | 1u << 5 | 1u << 8;
     const uint32_t f_dq_bw_vl = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
     int32_t isas = TYN_ISA_SCALAR | TYN_ISA_SSE2;
     uint32_t most[4], one[4], seven[4], state;
     cpuid(0, 0, most);
     cpuid(1, 0, one);
-    if (most[0] < 7 || (one[2] & (osxsave | avx)) != (osxsave | avx))
+    if (most[0] < 7 || (one[2] & popcnt_osxsave_avx) != popcnt_osxsave_avx)
         return isas;
     cpuid(7, 0, seven);
     state = saved();
-    if ((state & 0x06u) == 0x06u && (seven[1] & avx2)) {
+    if ((state & 0x06u) == 0x06u && (seven[1] & bmi_avx2_bmi2) == bmi_avx2_bmi2) {
         isas |= TYN_ISA_AVX2;
         if ((state & 0xe6u) == 0xe6u && (seven[1] & f_dq_bw_vl) == f_dq_bw_vl)
             isas |= TYN_ISA_AVX512;
