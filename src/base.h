@@ -104,6 +104,15 @@ static inline int32_t tyni_ceili(float x)
     return i + ((float)i < x);
 }
 
+/* How many bits are set. Not the compilers' own, which is a call where there is no instruction for it. */
+static inline int32_t tyni_ones32(uint32_t x)
+{
+    x -= x >> 1 & 0x55555555u;
+    x = (x & 0x33333333u) + (x >> 2 & 0x33333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0fu;
+    return (int32_t)(x * 0x01010101u >> 24);
+}
+
 /* Plain C twins of the bit scans; tests hold the builtins against them. x != 0. */
 static inline int32_t tyni_ctz32_plain(uint32_t x)
 {

@@ -35,8 +35,7 @@ int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, in
     int32_t count = 0, words = tyni_sample_words(last + 1);
     TYNI_LANES_CALL(isa, sample_breaks, (breaks, depth, first, last, threshold));
     for (int32_t w = 0; w < words; w++)
-        for (uint32_t bits = breaks[w]; bits; bits &= bits - 1)
-            count++;
+        count += tyni_ones32(breaks[w]);
     return count;
 }
 
@@ -66,8 +65,7 @@ int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slic
     set(rays, slice->first);
     set(rays, slice->last);
     for (int32_t w = 0; w < words; w++)
-        for (uint32_t bits = rays[w]; bits; bits &= bits - 1)
-            count++;
+        count += tyni_ones32(rays[w]);
     return count;
 }
 
@@ -85,53 +83,82 @@ int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last)
     return tyni_mini(w * 32 + tyni_ctz32(bits), last + 1);
 }
 
-static int bent(const float *value, int32_t a, int32_t b, int32_t c, float tolerance)
+/* The set bit before j; `first` if there is none. */
+static int32_t previous(const uint32_t *words, int32_t j, int32_t first)
 {
-    float between = value[a] + (value[c] - value[a]) * ((float)(b - a) / (float)(c - a));
-    return tyni_absf(value[b] - between) > tolerance;
+    int32_t w = j >> 5;
+    uint32_t bits = words[w] & ((1u << (j & 31)) - 1u);
+    while (!bits && w > first >> 5)
+        bits = words[--w];
+    return bits ? w * 32 + 31 - tyni_clz32(bits) : first;
 }
 
-static int any_bent(float *const value[3], int32_t values, int32_t a, int32_t b, int32_t c, float tolerance)
+/* b lies off the line through a and c. No branch on the sign: nobody can foretell it. */
+static int bent(float *const value[3], int32_t values, int32_t a, int32_t b, int32_t c, float tolerance)
 {
-    for (int32_t i = 0; i < values; i++)
-        if (bent(value[i], a, b, c, tolerance))
-            return 1;
-    return 0;
+    const float near = (float)(b - a), far = (float)(c - a), most = tolerance * far;
+    int off = 0;
+    for (int32_t i = 0; i < values; i++) {
+        const float *v = value[i];
+        const float d = (v[b] - v[a]) * far - (v[c] - v[a]) * near;
+        off |= (d > most) | (d < -most);
+    }
+    return off;
 }
 
-static int32_t halve(uint32_t *fresh, int32_t a, int32_t b)
+static void halve(uint32_t *fresh, int32_t a, int32_t b)
 {
-    if (b - a < 2)
-        return 0;
-    a += (b - a) / 2;
-    if (tyni_sample_bit(fresh, a))
-        return 0;
-    set(fresh, a);
-    return 1;
+    if (b - a > 1)
+        set(fresh, a + (b - a) / 2);
+}
+
+/* Compares rays from `a` on, until none of three is fresh; returns the last of those. New rays are not in `rays` yet, which
+ * tells them from the fresh ones. */
+static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks, float *const value[3],
+                           int32_t values, int32_t last, float tolerance)
+{
+    int32_t before = -1, stale = 0, w = a >> 5;
+    uint32_t bits = rays[w] & (0xfffffffeu << (a & 31));
+    while (a < last && stale < 2) {
+        int32_t b;
+        while (!bits)
+            bits = rays[++w];
+        b = w * 32 + tyni_ctz32(bits);
+        if (b == a + 1 && tyni_sample_bit(breaks, a)) {
+            before = -1; /* nothing is interpolated across it, so nothing is compared */
+        } else {
+            /* alone between breaks: so it is in the first round or never, and its start is fresh then */
+            if (before < 0 && b - a > 4 && tyni_sample_bit(fresh, a) && (b == last || tyni_sample_bit(breaks, b)))
+                halve(fresh, a, b);
+            if (before >= 0 && bent(value, values, before, a, b, tolerance)) {
+                halve(fresh, before, a);
+                halve(fresh, a, b);
+            }
+            before = a;
+        }
+        stale = fresh[w] & bits & (0u - bits) ? 0 : stale + 1;
+        bits &= bits - 1;
+        a = b;
+    }
+    return a;
 }
 
 int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, float *const value[3], int32_t values,
                            int32_t first, int32_t last, float tolerance)
 {
-    int32_t a = first, before = -1, words = tyni_sample_words(last + 1), count = 0;
-    memset(fresh, 0, sizeof *fresh * (size_t)words);
-    while (a < last) {
-        int32_t b = tyni_sample_next(rays, a + 1, last);
-        int broken = b == a + 1 && tyni_sample_bit(breaks, a);
-        int alone = before < 0 && (b == last || tyni_sample_bit(breaks, b));
-        if (broken) {
-            before = -1; /* nothing is interpolated across it, so nothing is compared */
-        } else {
-            if (alone && b - a > 4)
-                count += halve(fresh, a, b);
-            if (before >= 0 && any_bent(value, values, before, a, b, tolerance))
-                count += halve(fresh, before, a) + halve(fresh, a, b);
-            before = a;
-        }
-        a = b;
+    int32_t words = tyni_sample_words(last + 1), count = 0;
+    for (int32_t j = tyni_sample_next(fresh, first, last); j <= last;) {
+        int32_t a = previous(rays, previous(rays, j, first), first);
+        a = refine_from(a, fresh, rays, breaks, value, values, last, tolerance);
+        do /* the next one that is fresh */
+            j = a = tyni_sample_next(fresh, a + 1, last);
+        while (j <= last && !tyni_sample_bit(rays, j));
     }
-    for (int32_t w = 0; w < words; w++)
+    for (int32_t w = 0; w < words; w++) {
+        fresh[w] &= ~rays[w];
         rays[w] |= fresh[w];
+        count += tyni_ones32(fresh[w]);
+    }
     return count;
 }
 

@@ -287,6 +287,7 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     if (tyni_debug_marks(p->frame->debug))
         tyni_debug_mark_initial(p, index, &slice, s.rays, s.breaks);
     run_rays(p, &slice, &finder, s.rays, &s);
+    memcpy(s.fresh, s.rays, sizeof *s.fresh * (size_t)tyni_sample_words(slice.last + 1));
     while (config->tolerance < 1.0f && tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2),
                                                           slice.first, slice.last, config->tolerance))
         run_rays(p, &slice, &finder, s.fresh, &s);

@@ -173,7 +173,7 @@ static void test_refine(void)
 {
     static float values[3][MOST];
     float *const value[3] = {values[0], values[1], values[2]};
-    uint32_t breaks[WORDS], rays[WORDS], fresh[WORDS];
+    uint32_t breaks[WORDS], rays[WORDS], fresh[WORDS], whole[WORDS], again[WORDS];
     TEST("refinement on light");
     for (int n = 0; n < 400; n++) {
         int last = 80 + (int)(test_random() % (MOST - 80)), rounds = 0, total = 0;
@@ -185,12 +185,26 @@ static void test_refine(void)
             values[1][j] = bend * (float)j * (float)j * 0.05f + (j > last / 2 ? 0.2f : 0.0f);
             rays[j >> 5] |= (uint32_t)(j % 16 == 0 || j == last) << (j & 31);
         }
-        for (int found = 1; found > 0; rounds++)
+        for (int j = 0; j < last && n & 1; j += 1 + (int)(test_random() % 80u))
+            breaks[j >> 5] |= 1u << (j & 31);
+        for (int j = 0; j < last; j++) /* a ray on either side of each */
+            for (int k = 0; k < 2 && tyni_sample_bit(breaks, j); k++)
+                rays[(j + k) >> 5] |= 1u << ((j + k) & 31);
+        memcpy(fresh, rays, sizeof fresh);
+        memcpy(whole, rays, sizeof whole);
+        for (int found = 1; found > 0; rounds++) {
+            memcpy(again, whole, sizeof again); /* all compared once more: nothing else is found */
             total += found = tyni_sample_refine(fresh, rays, breaks, value, 2, 0, last, tolerance);
-        CHECK(rounds < 20 && total > 0); /* the step is found */
+            CHECK(tyni_sample_refine(again, whole, breaks, value, 2, 0, last, tolerance) == found);
+            CHECK(memcmp(whole, rays, sizeof whole) == 0 && memcmp(again, fresh, sizeof again) == 0);
+        }
+        CHECK(rounds < 20 && (total > 0 || n & 1)); /* the step is found, if no break is there */
         for (int a = 0, b; (b = tyni_sample_next(rays, a + 1, last)) < last; a = b) {
             int c = tyni_sample_next(rays, b + 1, last);
-            float between = values[1][a] + (values[1][c] - values[1][a]) * (float)(b - a) / (float)(c - a);
+            float between;
+            if ((b == a + 1 && tyni_sample_bit(breaks, a)) || (c == b + 1 && tyni_sample_bit(breaks, b)))
+                continue;
+            between = values[1][a] + (values[1][c] - values[1][a]) * (float)(b - a) / (float)(c - a);
             CHECK(fabsf(values[1][b] - between) <= tolerance + 1e-6f || c - a == 2);
         }
         memcpy(fresh, rays, sizeof fresh);
