@@ -494,6 +494,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
      ((slices) ? 3 * TYNI_BYTES((size_t)(slices) + 16, 4) : 0) +                                                               \
      ((lights) > 1 ? TYNI_BYTES((size_t)(width) * (height), 12) : 0) + TYNI_BYTES(workers, 64) +                               \
      (size_t)(workers) * (TYN_ROW_BYTES + TYN_BUNDLE_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) + \
+                          TYNI_BYTES((2 * (size_t)(maps) * ((size_t)(shadow_size) + 4) + 63) / 64, 4) +                        \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
                           11 * TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4) +                                 \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
@@ -529,7 +530,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_CONTEXT_BYTES 2816
 #define TYN_STATS_BYTES 256
 #define TYN_ROW_BYTES 1216
-#define TYN_BUNDLE_BYTES 2240
+#define TYN_BUNDLE_BYTES 2048
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_RUN(samples) ((size_t)((samples) < 512 ? ((samples) + 1) / 2 : 256))
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))

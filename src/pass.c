@@ -25,6 +25,8 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
     s->threshold = tyni_arena_take(&arena, columns, sizeof *s->threshold);
     s->split = tyni_arena_take(&arena, steps, sizeof *s->split);
+    s->blocks.low = tyni_arena_take(&arena, tyni_row_blocks(columns), 2 * sizeof *s->blocks.low);
+    s->blocks.high = s->blocks.low ? s->blocks.low + tyni_row_blocks(columns) : NULL;
     s->depth = tyni_arena_take(&arena, points, sizeof *s->depth);
     for (int32_t i = 0; i < 3; i++)
         s->value[i] = tyni_arena_take(&arena, points, sizeof *s->value[i]);

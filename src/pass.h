@@ -26,6 +26,7 @@ typedef struct tyni_scratch {
     tyni_row *row;
     uint16_t *threshold;             /* 2 * tyni_row_room */
     float *split;                    /* tyni_row_room */
+    tyni_blocks blocks;              /* of the thresholds */
     float *depth;                    /* points */
     float *value[3];                 /* points: visibility */
     float *plane[TYNI_PASS_PLANES];  /* tyni_pass_run each, for pixels */

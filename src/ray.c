@@ -6,122 +6,135 @@
 #include "line.h"
 #include "meter.h"
 
-#define TYNI_KERNEL "ray_kernel.h"
-#include "lanes/each.h"
-
 /* ---- where a ray goes into the light and out of it ------------------------------------------------------------------ */
 
-#define WORDS 16 /* of visibility at a time */
-#define EDGES 48 /* at a time: more than a word can have */
+/* Columns in hand: a piece has two a step, TYN_MAX_SHADOW steps and a few. */
+typedef char columns_fit[2 * (TYN_MAX_SHADOW + 4) <= 65535 ? 1 : -1];
 
 /* A ray in one piece of the row, and how far the search has come. */
 typedef struct crossing {
     const tyni_piece *piece;
-    float from, to; /* step coordinates where it comes in and leaves */
-    int32_t first, last;
+    int32_t next, last; /* the column that is looked at next, before which it is as outside; behind last: all were */
     uint32_t position;
-    int32_t next;  /* the column that is looked at next; behind last: all were */
-    int lit;       /* before it */
-    int32_t level; /* of the tree */
+    int outside; /* lit before the first column and behind the last */
     int32_t looked;
+    uint16_t *edges; /* for the columns at which it changes: TYNI_RAY_EDGES and TYNI_RAY_SPARE, */
+    int32_t stride;  /* so far apart */
 } crossing;
 
-/* `lit`: before the first column, where the search starts. */
-static void crossing_begin(crossing *c, const tyni_piece *piece, float from, float to, uint32_t position, int lit)
+/* An orthographic map: w is 1 everywhere. */
+static int is_flat(const tyni_piece *piece)
 {
-    int32_t a = tyni_clampi((int32_t)from, 0, piece->steps - 1), b = tyni_clampi(tyni_ceili(to) - 1, a, piece->steps - 1);
-    c->piece = piece;
-    c->from = from;
-    c->to = to;
-    c->first = 2 * a + (from - (float)a >= piece->split[a]);
-    c->last = 2 * b + (to - (float)b > piece->split[b]);
-    c->position = position;
-    c->next = c->first;
-    c->lit = lit;
-    c->level = 0;
-    c->looked = 0;
+    return piece->w.v.x == 0.0f && piece->w.v.y == 0.0f && piece->w.v.z == 0.0f;
 }
 
-/* Where column i begins for the ray: the first one where it comes in. */
-static float edge_of(const crossing *c, int32_t i)
+/* ray_find without vectors: column by column, but for blocks without a change. */
+static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
+                            int outside, uint16_t *edges, int32_t stride)
 {
-    return i <= c->first ? tyni_maxf(c->from, 0.0f) : tyni_row_edge(c->piece, i);
+    const uint16_t *threshold = finder->row->threshold;
+    const int32_t last = first + end;
+    int32_t i = first + *next, n = (position < threshold[i]) != outside;
+    int lit = position < threshold[i];
+    edges[0] = (uint16_t)*next;
+    for (i++; i <= last;) {
+        const int32_t w = i >> 6, behind = tyni_mini(64 * w + 64, last + 1);
+        if (position < finder->blocks->low[w] || position >= finder->blocks->high[w])
+            i = behind;
+        for (; i < behind; i++)
+            if ((position < threshold[i]) != lit) {
+                lit = !lit;
+                edges[n++ * stride] = (uint16_t)(i - first);
+                if (n == TYNI_RAY_EDGES) {
+                    *next = i - first + 1;
+                    return n;
+                }
+            }
+    }
+    *next = end + 1;
+    return n;
+}
+
+#define TYNI_KERNEL "ray_kernel.h"
+#include "lanes/each.h"
+
+/* The columns that a ray crosses from step coordinate `from` to `to`. */
+static void columns_of(const tyni_piece *piece, float from, float to, int32_t *first, int32_t *last)
+{
+    int32_t a = tyni_clampi((int32_t)from, 0, piece->steps - 1), b = tyni_clampi(tyni_ceili(to) - 1, a, piece->steps - 1);
+    *first = 2 * a + (from - (float)a >= piece->split[a]);
+    *last = 2 * b + (to - (float)b > piece->split[b]);
 }
 
 /* IVB's march without its tree. */
-static int32_t each_column(crossing *c, float *at)
+static int32_t each_column(crossing *c)
 {
-    int32_t n = 0, start = c->next;
-    for (; c->next <= c->last && n < EDGES; c->next++)
-        if ((c->position < c->piece->threshold[c->next]) != c->lit) {
-            c->lit = !c->lit;
-            at[n++] = edge_of(c, c->next);
+    const uint16_t *threshold = c->piece->threshold;
+    int32_t n = 0, i = c->next;
+    int lit = c->outside;
+    for (; i <= c->last && n < TYNI_RAY_EDGES; i++)
+        if ((c->position < threshold[i]) != lit) {
+            lit = !lit;
+            c->edges[n++ * c->stride] = (uint16_t)i;
         }
-    c->looked += c->next - start;
+    c->looked += i - c->next;
+    c->next = i;
     return n;
 }
 
 /* IVB's march with its tree. */
-static int32_t descend(crossing *c, const tyni_finder *finder, float *at)
+static int32_t descend(crossing *c, const tyni_finder *finder)
 {
-    int32_t n = 0, top;
-    while (c->next <= c->last && n < EDGES) {
+    int32_t n = 0, top, level = 0;
+    int lit = c->outside;
+    while (c->next <= c->last && n < TYNI_RAY_EDGES) {
         int32_t i = c->piece->first + c->next;
-        int lit;
-        c->looked += tyni_tree_span(finder->tree, finder->row->threshold, c->position, i, &c->level, &top, &lit);
-        if (lit != c->lit) {
-            c->lit = lit;
-            at[n++] = edge_of(c, c->next);
+        int now;
+        c->looked += tyni_tree_span(finder->tree, finder->row->threshold, c->position, i, &level, &top, &now);
+        if (now != lit) {
+            lit = now;
+            c->edges[n++ * c->stride] = (uint16_t)c->next;
         }
-        c->next += 1 << c->level;
+        c->next += 1 << level;
     }
     return n;
 }
 
-/* The transitions of a word of visibility that begins at column i. */
-static int32_t transitions(crossing *c, int32_t i, uint32_t bits, float *at)
+/* 32 columns at a time, by the words that the sweep keeps. */
+static int32_t swept_words(crossing *c, const tyni_finder *finder)
 {
-    int32_t left = c->last - i + 1, n = 0;
-    uint32_t changes = bits ^ (bits << 1 | (uint32_t)c->lit);
-    if (left < 32)
-        changes &= (1u << left) - 1u;
-    for (; changes; changes &= changes - 1) {
-        c->lit = !c->lit;
-        at[n++] = edge_of(c, i + tyni_ctz32(changes));
+    int32_t n = 0;
+    uint32_t lit = (uint32_t)c->outside;
+    while (c->next <= c->last && n < TYNI_RAY_EDGES) {
+        uint32_t bits = tyni_sweep_word(finder->sweep, c->piece->first + c->next), changes = bits ^ (bits << 1 | lit);
+        int32_t left = c->last - c->next + 1;
+        if (left < 32)
+            changes &= (1u << left) - 1u;
+        for (; changes && n < TYNI_RAY_EDGES; changes &= changes - 1)
+            c->edges[n++ * c->stride] = (uint16_t)(c->next + tyni_ctz32(changes));
+        lit = bits >> 31;
+        c->next += changes ? tyni_ctz32(changes) : tyni_mini(left, 32);
+        c->looked++;
     }
     return n;
 }
 
-/* 32 columns at a time: words of visibility, made by compares or kept by the sweep, and their transitions by bit scans. */
-static int32_t packed_words(crossing *c, const tyni_finder *finder, float *at)
+/* The next columns at which the ray changes, an even number: TYNI_RAY_EDGES, or all that are left and the end of the last
+ * column where that is a change too; then c->next is behind c->last. */
+static int32_t find(crossing *c, const tyni_finder *finder)
 {
-    uint32_t words[WORDS];
-    int32_t n = 0, w = 0, count = tyni_mini((c->last - c->next) / 32 + 1, WORDS);
-    const uint16_t *threshold = c->piece->threshold + c->next;
-    if (finder->rays == TYN_RAYS_SWEEP) {
-        for (int32_t k = 0; k < count; k++)
-            words[k] = tyni_sweep_word(finder->sweep, c->piece->first + c->next + 32 * k);
-    } else {
-        TYNI_LANES_CALL(finder->isa, ray_compare, (threshold, count, c->position, words));
-    }
-    for (; w < count && n <= EDGES - 32; w++, c->next += 32)
-        n += transitions(c, c->next, words[w], at + n);
-    c->looked += w;
-    return n;
-}
-
-/* The next edges, at most EDGES; all are found when c->next is behind c->last. */
-static int32_t find(crossing *c, const tyni_finder *finder, float *at)
-{
+    int32_t n;
     if (finder->rays == TYN_RAYS_TREE)
-        return descend(c, finder, at);
-    return finder->rays == TYN_RAYS_COLUMNS ? each_column(c, at) : packed_words(c, finder, at);
-}
-
-/* Where the last column ends, back to what is outside. */
-static float end_of(const crossing *c)
-{
-    return tyni_minf(c->to, (float)c->piece->steps);
+        n = descend(c, finder);
+    else if (finder->rays == TYN_RAYS_COLUMNS)
+        n = each_column(c);
+    else if (finder->rays == TYN_RAYS_SWEEP)
+        n = swept_words(c, finder);
+    else
+        n = TYNI_LANES_CALL(finder->isa, ray_words, (c, finder));
+    if (n & 1)
+        c->edges[n++ * c->stride] = (uint16_t)(c->last + 1);
+    return n;
 }
 
 /* ---- one ray -------------------------------------------------------------------------------------------------------- */
@@ -143,53 +156,53 @@ static int row_span(const tyni_piece *piece, tyni_line r, tyni_line w, const tyn
     return *from < *to;
 }
 
-/* t of a step coordinate. */
-static float edge_t(float at, float rc, float rd, float wc, float wd)
-{
-    return (at * wc - rc) / (rd - at * wd);
-}
-
 int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v,
                      float *light)
 {
     const tyni_row *row = finder->row;
-    uint32_t position = tyni_row_position(row, p);
-    int32_t looked = 0;
-    float at[EDGES], from, to;
+    int32_t first;
+    uint16_t edges[TYNI_RAY_EDGES + TYNI_RAY_SPARE];
+    float from, to;
     tyni_meter m;
     crossing c;
     tyni_meter_begin(&m, it, lamp, v, light);
-    if (!(it->t0 < it->t1))
-        return 0;
-    for (int32_t i = 0; i < row->count; i++) {
-        tyni_line r = tyni_line_along(&row->pieces[i].r, v), w = tyni_line_along(&row->pieces[i].w, v);
+    c.position = tyni_row_position(row, p);
+    c.outside = m.outside;
+    c.looked = 0;
+    c.edges = edges;
+    c.stride = 1;
+    for (int32_t i = 0; i < row->count && it->t0 < it->t1; i++) {
+        const tyni_piece *piece = &row->pieces[i];
+        tyni_line r = tyni_line_along(&piece->r, v), w = tyni_line_along(&piece->w, v);
         int lit = m.outside;
-        if (!row_span(&row->pieces[i], r, w, it, &from, &to))
+        if (!row_span(piece, r, w, it, &from, &to))
             continue;
-        crossing_begin(&c, &row->pieces[i], from, to, position, m.outside);
+        columns_of(piece, from, to, &first, &c.last);
+        from = tyni_maxf(from, 0.0f);
+        to = tyni_minf(to, (float)piece->steps);
+        c.piece = piece;
+        c.next = first;
         while (c.next <= c.last) {
-            int32_t n = find(&c, finder, at);
+            int32_t n = find(&c, finder);
             for (int32_t k = 0; k < n; k++) {
+                /* the first column begins before the ray comes in, the last one ends behind its end; all others are between */
+                float at = tyni_clampf(tyni_row_edge(piece, edges[k]), from, to);
                 lit = !lit;
-                tyni_meter_lit(&m, lit, edge_t(at[k], r.c, r.d, w.c, w.d));
+                tyni_meter_lit(&m, lit, (at * w.c - r.c) / (r.d - at * w.d));
             }
         }
-        looked += c.looked;
-        tyni_meter_lit(&m, m.outside, edge_t(end_of(&c), r.c, r.d, w.c, w.d));
     }
-    tyni_meter_end(&m);
-    return looked;
+    if (it->t0 < it->t1)
+        tyni_meter_end(&m);
+    return c.looked;
 }
 
 int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *it, const tyni_sight *v, int32_t *first, int32_t *last,
                      float *from, float *to)
 {
-    crossing c;
     if (!row_span(piece, tyni_line_along(&piece->r, v), tyni_line_along(&piece->w, v), it, from, to))
         return 0;
-    crossing_begin(&c, piece, *from, *to, 0, 0);
-    *first = c.first;
-    *last = c.last;
+    columns_of(piece, *from, *to, first, last);
     return 1;
 }
 
@@ -209,67 +222,60 @@ int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, const tyni_sig
 
 /* ---- bundles -------------------------------------------------------------------------------------------------------- */
 
-void tyni_ray_bundle(tyni_bundle *b, int32_t isa, const tyni_slice *slice, const tyni_view *view, float most,
-                     const float sigma[2])
+/* Looks on along each ray until its edges are full or its columns have an end. Returns whether a ray has columns left. */
+static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piece *piece, int outside, int32_t *looked)
 {
-    TYNI_LANES_CALL(isa, ray_begin, (b, slice, view, most, sigma));
-    b->edges = 0;
-}
-
-/* The integrals of the edges that wait, and their sums, ray by ray in order. */
-static void settle(tyni_bundle *b, int32_t isa, const float sigma[2], int32_t channels)
-{
-    TYNI_LANES_CALL(isa, ray_integrals, (b, sigma, channels));
-    for (int32_t i = 0; i < b->edges;) {
-        int32_t n = b->ray[i], on = b->on[i];
-        float sum[2];
-        sum[0] = b->sum[0][n];
-        sum[1] = b->sum[1][n];
-        for (; i < b->edges && b->ray[i] == n; i++, on = !on) {
-            sum[0] = on ? sum[0] - b->value[0][i] : sum[0] + b->value[0][i];
-            if (channels > 1)
-                sum[1] = on ? sum[1] - b->value[1][i] : sum[1] + b->value[1][i];
-        }
-        b->sum[0][n] = sum[0];
-        b->sum[1][n] = sum[1];
-    }
-    b->edges = 0;
-}
-
-static int32_t cross(tyni_bundle *b, int32_t n, const tyni_finder *finder, const tyni_piece *piece, int outside,
-                     const float sigma[2], int32_t channels)
-{
-    uint32_t position = tyni_row_position(finder->row, b->p[n]);
-    float at[EDGES + 16]; /* whole vectors */
-    int on = 0;
+    int left = 0;
     crossing c;
-    crossing_begin(&c, piece, b->from[n], b->until[n], position, outside);
-    while (c.next <= c.last) {
-        int32_t count = find(&c, finder, at);
-        if (c.next > c.last && c.lit != outside)
-            at[count++] = end_of(&c);
-        if (b->edges + count > TYNI_RAY_EDGES)
-            settle(b, finder->isa, sigma, channels);
-        TYNI_LANES_CALL(finder->isa, ray_places, (b, n, at, count));
-        for (int32_t k = 0; k < count; k++, on = !on) {
-            b->ray[b->edges + k] = (uint8_t)n;
-            b->on[b->edges + k] = (uint8_t)!on;
-        }
-        b->edges += count;
+    c.piece = piece;
+    c.outside = outside;
+    c.looked = 0;
+    c.stride = TYNI_RAY_BUNDLE;
+    for (int32_t n = 0; n < b->count; n++) {
+        b->edges[n] = 0;
+        if (b->next[n] > b->last[n])
+            continue;
+        if (finder->rays == TYN_RAYS_SWEEP)
+            tyni_sweep_to(finder->sweep, b->sample[n]);
+        c.next = b->next[n];
+        c.last = b->last[n];
+        c.position = (uint32_t)b->position[n];
+        c.edges = &b->edge[0][n];
+        b->edges[n] = find(&c, finder);
+        b->next[n] = c.next;
+        left |= c.next <= c.last;
     }
-    return c.looked;
+    *looked += c.looked;
+    return left;
 }
 
-int32_t tyni_ray_bundle_row(tyni_bundle *b, const tyni_finder *finder, int outside, const float sigma[2], int32_t channels)
+int32_t tyni_ray_bundle(tyni_bundle *b, const tyni_finder *finder, const tyni_slice *slice, const tyni_view *view,
+                        const float *depth, float most, int outside, const float sigma[2])
 {
-    int32_t looked = 0;
-    for (int32_t i = 0; i < finder->row->count; i++) {
-        const tyni_piece *piece = &finder->row->pieces[i];
-        TYNI_LANES_CALL(finder->isa, ray_spans, (b, piece));
-        for (int32_t n = 0; n < b->count; n++)
-            if (b->from[n] < b->until[n])
-                looked += cross(b, n, finder, piece, outside, sigma, channels);
-        settle(b, finder->isa, sigma, channels);
+    const tyni_row *row = finder->row;
+    int32_t looked = 0, isa = finder->isa;
+    int left;
+    b->coarse = 0;
+    for (int32_t n = b->count; n < TYNI_RAY_BUNDLE; n++) {
+        b->sample[n] = b->sample[0];
+        b->edges[n] = 0;
     }
+    TYNI_LANES_CALL(isa, ray_begin, (b, slice, view, row, depth, most));
+    for (int32_t i = 0; i < row->count; i++)
+        TYNI_LANES_CALL(isa, ray_spans, (b, view, &row->pieces[i], 1));
+    for (int32_t i = 0; i < row->count; i++) {
+        const tyni_piece *piece = &row->pieces[i];
+        if (row->count > 1)
+            TYNI_LANES_CALL(isa, ray_spans, (b, view, piece, 0));
+        TYNI_LANES_CALL(isa, ray_enter, (b, piece, sigma[1]));
+        do {
+            if (finder->rays == TYN_RAYS_WORDS)
+                left = TYNI_LANES_CALL(isa, ray_fill, (b, finder, piece, outside, &looked));
+            else
+                left = fill_edges(b, finder, piece, outside, &looked);
+            TYNI_LANES_CALL(isa, ray_settle, (b, piece, sigma));
+        } while (left);
+    }
+    TYNI_LANES_CALL(isa, ray_visible, (b, outside, sigma));
     return looked;
 }

@@ -17,9 +17,10 @@
 typedef struct tyni_finder {
     const tyni_row *row;
     int32_t isa;
-    tyn_rays rays;           /* not TYN_RAYS_STEPS */
-    const tyni_tree *tree;   /* of the row, for TYN_RAYS_TREE */
-    const tyni_sweep *sweep; /* for TYN_RAYS_SWEEP: it stands at the ray's sample */
+    tyn_rays rays;             /* not TYN_RAYS_STEPS */
+    const tyni_blocks *blocks; /* of the row, for TYN_RAYS_WORDS */
+    const tyni_tree *tree;     /* the same, for TYN_RAYS_TREE */
+    tyni_sweep *sweep;         /* for TYN_RAYS_SWEEP: it stands at the ray's sample, or is sent there for a bundle */
 } tyni_finder;
 
 /* p: of the ray on the slice's line. light[n]: one value for each channel of the integral, which was begun for the same ray v.
@@ -37,37 +38,31 @@ int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *integral, con
 /* ---- many rays of a white sun at once ---- */
 
 #define TYNI_RAY_BUNDLE 16 /* rays, a whole vector of the widest ISA */
-#define TYNI_RAY_EDGES 64  /* places where rays go into or out of the light, that are waiting for their integrals */
+#define TYNI_RAY_EDGES 24  /* edges of a ray at a time: it goes into the light or out of it. Even: then it is back outside */
+#define TYNI_RAY_SPARE 3   /* behind them, for who writes a few more than there are */
 
-/* Rays from 0 to `to` along d; all arrays are per ray. */
+/* All zeros before its first use: where rays have fewer edges than their neighbours, what is there is read and dropped.
+ * Rays from t = 0 to `to`; all arrays are per ray. */
 typedef struct tyni_bundle {
     int32_t count;
-    float p[TYNI_RAY_BUNDLE], depth[TYNI_RAY_BUNDLE];   /* in: places on the slice's line, depths; to the end repeat the last */
-    float d[3][TYNI_RAY_BUNDLE], o[3][TYNI_RAY_BUNDLE]; /* the ray, and where it starts */
+    uint32_t coarse;                   /* out: bit n: columns are too coarse for ray n, which has no value; walk */
+    int32_t sample[TYNI_RAY_BUNDLE];   /* in, the first `count` */
+    float visible[2][TYNI_RAY_BUNDLE]; /* out, by channel */
+    float v[3][TYNI_RAY_BUNDLE];       /* its way from the camera; of an orthographic one, where it starts */
     float to[TYNI_RAY_BUNDLE];
-    float all[2][TYNI_RAY_BUNDLE]; /* the integral over all of the ray, by channel */
-    float sum[2][TYNI_RAY_BUNDLE]; /* of what differs from `outside` */
     float texels[TYNI_RAY_BUNDLE]; /* columns crossed, in steps */
-    /* of the piece at hand: r = c + t d and w alike; the steps where the ray comes in and leaves */
+    int32_t position[TYNI_RAY_BUNDLE];
+    /* of the piece at hand: r = c + t d and w alike; the steps where the ray comes in and leaves; its next and last column */
     float rc[TYNI_RAY_BUNDLE], rd[TYNI_RAY_BUNDLE], wc[TYNI_RAY_BUNDLE], wd[TYNI_RAY_BUNDLE];
     float from[TYNI_RAY_BUNDLE], until[TYNI_RAY_BUNDLE];
-    int32_t edges;
-    float t[TYNI_RAY_EDGES], value[2][TYNI_RAY_EDGES];
-    uint8_t ray[TYNI_RAY_EDGES], on[TYNI_RAY_EDGES];
+    int32_t next[TYNI_RAY_BUNDLE], last[TYNI_RAY_BUNDLE];
+    int32_t edges[TYNI_RAY_BUNDLE];                                  /* that wait for their integrals */
+    uint16_t edge[TYNI_RAY_EDGES + TYNI_RAY_SPARE][TYNI_RAY_BUNDLE]; /* rays side by side: they change at these columns */
 } tyni_bundle;
 
-/* Sets all but the counts of edges from p and depth; `most`: the frame's max_distance, 0: none. */
-void tyni_ray_bundle(tyni_bundle *bundle, int32_t isa, const tyni_slice *slice, const tyni_view *view, float most,
-                     const float sigma[2]);
-
-/* Visibility of ray `n` is then 1 - sum / all of it, or sum / all where all else is dark, unless columns are too coarse for
- * it: tyni_ray_bundle_coarse. `channels`: 1 or 2. For TYN_RAYS_SWEEP the bundle has one ray. Returns what was looked at. */
-int32_t tyni_ray_bundle_row(tyni_bundle *bundle, const tyni_finder *finder, int outside, const float sigma[2],
-                            int32_t channels);
-
-static inline int tyni_ray_bundle_coarse(const tyni_bundle *b, int32_t n, float sigma)
-{
-    return tyni_maxf(1.0f, sigma * b->to[n]) > 0.05f * b->texels[n];
-}
+/* From `count` and `sample` all the rest. depth: of the slice's samples; most: the frame's max_distance, 0: none; outside: what
+ * is not of the row is lit; sigma: of the two channels, the larger one second. Returns what was looked at. */
+int32_t tyni_ray_bundle(tyni_bundle *bundle, const tyni_finder *finder, const tyni_slice *slice, const tyni_view *view,
+                        const float *depth, float most, int outside, const float sigma[2]);
 
 #endif

@@ -1,70 +1,168 @@
 /* ray_kernel.h - a template: rays side by side, for ray.c. */
 
-/* Words of visibility; what lies behind the last column is anything. */
-static TYNI_V_TARGET void TYNI_V(ray_compare)(const uint16_t *threshold, int32_t words, uint32_t position, uint32_t *out)
+/* The lowest bit that is set; x != 0. */
+TYNI_V_INLINE int32_t TYNI_V(ray_ctz)(uint64_t x)
 {
-    for (int32_t w = 0; w < words; w++)
-        out[w] = v_above16(threshold + 32 * w, position);
+#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
+    return __builtin_ctzll(x);
+#else
+    return (uint32_t)x ? tyni_ctz32((uint32_t)x) : 32 + tyni_ctz32((uint32_t)(x >> 32));
+#endif
 }
 
-/* integral of e^(-sigma t) from 0 to t */
-TYNI_V_INLINE v_float TYNI_V(ray_integral)(v_float t, float sigma)
+/* How many are set. */
+TYNI_V_INLINE int32_t TYNI_V(ray_ones)(uint64_t x)
 {
-    return t * v_fog(sigma * t);
+#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
+    if (v_n >= 8) /* an instruction there */
+        return __builtin_popcountll(x);
+#endif
+    return tyni_ones32((uint32_t)x) + tyni_ones32((uint32_t)(x >> 32));
 }
 
-/* tyni_slice_sight of each ray; how far it goes; its integrals. */
-static TYNI_V_TARGET void TYNI_V(ray_begin)(tyni_bundle *b, const tyni_slice *s, const tyni_view *view, float most,
-                                            const float sigma[2])
+/* find by compares and bit scans, 64 columns at a time. Blocks without a change are passed over 32 at a time. Of a word that
+ * changes four edges are written without asking whether there are so many: a branch that nobody can foretell costs more. */
+TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
+                                       int outside, uint16_t *edges, int32_t stride)
+{
+    const uint16_t *threshold = finder->row->threshold, *low = finder->blocks->low, *high = finder->blocks->high;
+    const int32_t start = first + *next, last = first + end;
+    const uint64_t top = (uint64_t)1 << 63, behind = ~(uint64_t)1 << (start & 63);
+    int32_t n = (position < threshold[start]) != outside;
+    if (v_n == 1)
+        return find_columns(finder, first, next, end, position, outside, edges, stride);
+    edges[0] = (uint16_t)*next;
+    for (int32_t w = start >> 6; w <= last >> 6; w += 32) {
+        uint32_t mixed = v_above16(high + w, position) & ~v_above16(low + w, position);
+        if ((last >> 6) - w < 31)
+            mixed &= ((uint32_t)2 << ((last >> 6) - w)) - 1;
+        for (; mixed; mixed &= mixed - 1) {
+            const int32_t i = 64 * (w + tyni_ctz32(mixed));
+            const uint64_t bits = v_above16(threshold + i, position) | (uint64_t)v_above16(threshold + i + 32, position) << 32;
+            uint64_t changes = bits ^ (bits << 1);
+            uint16_t *out = edges + n * stride;
+            if (i > start)
+                changes ^= position < threshold[i - 1];
+            else
+                changes &= behind;
+            if (i + 63 > last)
+                changes &= ((uint64_t)2 << (last & 63)) - 1;
+            n += TYNI_V(ray_ones)(changes);
+            do {
+                const uint64_t second = changes & (changes - 1), third = second & (second - 1), fourth = third & (third - 1);
+                out[0] = (uint16_t)(i - first + TYNI_V(ray_ctz)(changes | top));
+                out[stride] = (uint16_t)(i - first + TYNI_V(ray_ctz)(second | top));
+                out[2 * stride] = (uint16_t)(i - first + TYNI_V(ray_ctz)(third | top));
+                out[3 * stride] = (uint16_t)(i - first + TYNI_V(ray_ctz)(fourth | top));
+                out += 4 * stride;
+                changes = fourth & (fourth - 1);
+            } while (changes && out < edges + TYNI_RAY_EDGES * stride);
+            if (n >= TYNI_RAY_EDGES) {
+                *next = edges[(TYNI_RAY_EDGES - 1) * stride] + 1;
+                return TYNI_RAY_EDGES;
+            }
+        }
+    }
+    *next = end + 1;
+    return n;
+}
+
+/* For one ray: its edges lie side by side. */
+static TYNI_V_TARGET int32_t TYNI_V(ray_words)(crossing *c, const tyni_finder *finder)
+{
+    const int32_t start = c->next;
+    const int32_t n = TYNI_V(ray_find)(finder, c->piece->first, &c->next, c->last, c->position, c->outside, c->edges, 1);
+    c->looked += (c->next - start + 31) / 32;
+    return n;
+}
+
+/* fill_edges */
+static TYNI_V_TARGET int TYNI_V(ray_fill)(tyni_bundle *b, const tyni_finder *finder, const tyni_piece *piece, int outside,
+                                          int32_t *looked)
+{
+    int left = 0;
+    for (int32_t n = 0; n < b->count; n++) {
+        const int32_t last = b->last[n], start = b->next[n];
+        int32_t next = start, count = 0;
+        if (next <= last) {
+            count = TYNI_V(ray_find)(finder, piece->first, &next, last, (uint32_t)b->position[n], outside, &b->edge[0][n],
+                                     TYNI_RAY_BUNDLE);
+            b->edge[count][n] = (uint16_t)(last + 1);
+            count += count & 1;
+            b->next[n] = next;
+            left |= next <= last;
+            *looked += (next - start + 31) / 32;
+        }
+        b->edges[n] = count;
+    }
+    return left;
+}
+
+/* 1 - 2^-x for x >= 0, to 5e-7 of itself also where x is about 0. */
+TYNI_V_INLINE v_float TYNI_V(ray_dimmed)(v_float x)
+{
+    const v_float y = v_min(x, v_set(126.0f));
+    const v_int n = v_trunc(y + 0.5f);
+    const v_float f = y - v_to_float(n), f2 = f * f, scale = v_from_bits(v_shl(v_isub(v_iset(127), n), 23));
+    /* (2^-f - 1) / f for |f| <= 1/2, interpolated at Chebyshev's points */
+    const v_float q = (0.240223497f * f - 0.693147182f) + f2 * (0.00966636837f * f - 0.0555038117f - 0.00133813021f * f2);
+    return (1.0f - scale) - f * scale * q;
+}
+
+/* tyni_slice_sight of each ray; how far it goes. */
+static TYNI_V_TARGET void TYNI_V(ray_begin)(tyni_bundle *b, const tyni_slice *s, const tyni_view *view, const tyni_row *row,
+                                            const float *depth, float most)
 {
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
-        const v_float p = v_load(b->p + i), zero = v_set(0.0f);
+        const v_int sample = v_iload(b->sample + i);
+        const v_float p = s->p0 + v_to_float(sample) * s->dp, zero = v_set(0.0f);
         const v_float x = s->a.x + p * s->b.x, y = s->a.y + p * s->b.y, z = s->a.z + p * s->b.z;
-        v_float to = v_load(b->depth + i);
+        v_float to = v_gather(depth, sample);
         if (view->orthographic) {
-            v_store(b->o[0] + i, x);
-            v_store(b->o[1] + i, y);
-            v_store(b->o[2] + i, z);
-            v_store(b->d[0] + i, v_set(view->forward.x));
-            v_store(b->d[1] + i, v_set(view->forward.y));
-            v_store(b->d[2] + i, v_set(view->forward.z));
+            v_store(b->v[0] + i, x);
+            v_store(b->v[1] + i, y);
+            v_store(b->v[2] + i, z);
         } else {
             const v_float length = v_sqrt(x * x + y * y + z * z), inverse = 1.0f / length;
-            v_store(b->o[0] + i, zero);
-            v_store(b->o[1] + i, zero);
-            v_store(b->o[2] + i, zero);
-            v_store(b->d[0] + i, x * inverse);
-            v_store(b->d[1] + i, y * inverse);
-            v_store(b->d[2] + i, z * inverse);
+            v_store(b->v[0] + i, x * inverse);
+            v_store(b->v[1] + i, y * inverse);
+            v_store(b->v[2] + i, z * inverse);
             to = to * length;
         }
         if (most > 0.0f)
             to = v_min(v_set(most), to);
         v_store(b->to + i, to);
-        for (int32_t k = 0; k < 2; k++) {
-            v_store(b->all[k] + i, TYNI_V(ray_integral)(to, sigma[k]));
-            v_store(b->sum[k] + i, zero);
-        }
+        v_store(b->visible[0] + i, zero);
+        v_store(b->visible[1] + i, zero);
         v_store(b->texels + i, zero);
+        /* tyni_row_position */
+        v_istore(b->position + i, v_trunc(v_clamp((p - row->p_start) * row->p_scale, zero, v_set(65534.0f))));
     }
 }
 
 /* A form along each ray. */
-TYNI_V_INLINE void TYNI_V(ray_form)(const tyni_bundle *b, int32_t i, const tyni_form *f, v_float *c, v_float *d)
+TYNI_V_INLINE void TYNI_V(ray_form)(const tyni_bundle *b, int32_t i, const tyni_view *view, const tyni_form *f, v_float *c,
+                                    v_float *d)
 {
-    *c = v_load(b->o[0] + i) * f->v.x + v_load(b->o[1] + i) * f->v.y + v_load(b->o[2] + i) * f->v.z + f->c;
-    *d = v_load(b->d[0] + i) * f->v.x + v_load(b->d[1] + i) * f->v.y + v_load(b->d[2] + i) * f->v.z;
+    const v_float dot = v_load(b->v[0] + i) * f->v.x + v_load(b->v[1] + i) * f->v.y + v_load(b->v[2] + i) * f->v.z;
+    if (view->orthographic) {
+        *c = dot + f->c;
+        *d = v_set(tyni_vec_dot(f->v, view->forward));
+    } else {
+        *c = v_set(f->c);
+        *d = dot;
+    }
 }
 
 /* row_span of each ray: from >= until where it does not cross the piece. */
-static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_piece *piece)
+static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_view *view, const tyni_piece *piece, int count)
 {
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
         const v_float zero = v_set(0.0f), end = v_load(b->to + i);
         v_float rc, rd, wc, wd, near, far, low = zero, high = end, from, until, cut;
         v_mask crosses;
-        TYNI_V(ray_form)(b, i, &piece->r, &rc, &rd);
-        TYNI_V(ray_form)(b, i, &piece->w, &wc, &wd);
+        TYNI_V(ray_form)(b, i, view, &piece->r, &rc, &rd);
+        TYNI_V(ray_form)(b, i, view, &piece->w, &wc, &wd);
         /* the part in front of the map: w >= 1e-6 */
         near = wc - 1e-6f;
         far = near + end * wd;
@@ -81,26 +179,110 @@ static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_piece *pi
         v_store(b->wd + i, wd);
         v_store(b->from + i, v_select(crosses, from, zero));
         v_store(b->until + i, v_select(crosses, until, zero));
-        v_store(b->texels + i, v_load(b->texels + i) + v_select(crosses, until - from, zero));
+        if (count)
+            v_store(b->texels + i, v_load(b->texels + i) + v_select(crosses, until - from, zero));
     }
 }
 
-/* Where on ray n the edges are, behind those that wait. */
-static TYNI_V_TARGET void TYNI_V(ray_places)(tyni_bundle *b, int32_t n, const float *at, int32_t count)
+/* tyni_ray_coarse of rays that cross any column. */
+TYNI_V_INLINE v_mask TYNI_V(ray_coarse_mask)(const tyni_bundle *b, int32_t i, float sigma)
 {
-    const float rc = b->rc[n], rd = b->rd[n], wc = b->wc[n], wd = b->wd[n];
-    const v_float end = v_set(b->to[n]);
-    for (int32_t i = 0; i < count; i += v_n) {
-        const v_float a = v_load_n(at + i, count - i);
-        v_store_n(b->t + b->edges + i, v_clamp((a * wc - rc) / (rd - a * wd), v_set(0.0f), end), count - i);
+    const v_float texels = v_load(b->texels + i), share = v_max(v_set(1.0f), sigma * v_load(b->to + i));
+    return v_mand(v_gt(texels, v_set(0.0f)), v_gt(share, 0.05f * texels));
+}
+
+/* columns_of each ray that crosses the piece and is not coarse; of others none. */
+static TYNI_V_TARGET void TYNI_V(ray_enter)(tyni_bundle *b, const tyni_piece *piece, float sigma)
+{
+    const v_int one = v_iset(1), none = v_iset(0), final = v_iset(piece->steps - 1);
+    for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
+        const v_float from = v_load(b->from + i), until = v_load(b->until + i);
+        const v_mask coarse = TYNI_V(ray_coarse_mask)(b, i, sigma), crosses = v_mandnot(v_lt(from, until), coarse);
+        const v_int k = v_imax(v_imin(v_trunc(from), final), none);
+        const v_int l = v_imax(v_imin(v_isub(v_ceili(until), one), final), k);
+        const v_mask second = v_ge(from - v_to_float(k), v_gather(piece->split, k));
+        const v_mask both = v_gt(until - v_to_float(l), v_gather(piece->split, l));
+        b->coarse = (i ? b->coarse : 0) | v_word(coarse) << i;
+        v_istore(b->next + i, v_iadd(v_iadd(k, k), v_iselect(second, one, none)));
+        v_istore(b->last + i, v_iselect(crosses, v_iadd(v_iadd(l, l), v_iselect(both, one, none)), v_iset(-1)));
+        if (is_flat(piece)) { /* w is the same all along the ray */
+            const v_float inverse = 1.0f / v_load(b->rd + i);
+            v_store(b->rc + i, v_load(b->rc + i) * inverse);
+            v_store(b->rd + i, v_load(b->wc + i) * inverse);
+        }
+        v_store(b->from + i, v_max(from, v_set(0.0f)));
+        v_store(b->until + i, v_min(until, v_set((float)piece->steps)));
     }
 }
 
-static TYNI_V_TARGET void TYNI_V(ray_integrals)(tyni_bundle *b, const float sigma[2], int32_t channels)
+/* Of an extinction: its e^-(sigma t) as a power of 2. Where it is about 0 any small one gives the same ratios of integrals. */
+TYNI_V_INLINE float TYNI_V(ray_rate)(float sigma)
 {
-    for (int32_t i = 0; i < b->edges; i += v_n) {
-        const v_float t = v_load(b->t + i);
-        for (int32_t k = 0; k < channels; k++)
-            v_store(b->value[k] + i, TYNI_V(ray_integral)(t, sigma[k]));
+    return 1.44269504f * tyni_maxf(sigma, 1e-20f);
+}
+
+/* Where edge e of each ray is: its t. */
+TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, int32_t e)
+{
+    const v_int column = v_load_u16(b->edge[e] + i), step = v_shr(column, 1), one = v_iset(1);
+    /* rays with fewer edges have there what others left */
+    v_float at = v_gather(piece->split, v_imin(step, v_iset(piece->steps - 1)));
+    at = v_to_float(step) + v_select(v_ieq(v_iand(column, one), one), at, v_set(0.0f));
+    /* the first column begins before the ray comes in, the last one ends behind its end */
+    at = v_clamp(at, v_load(b->from + i), v_load(b->until + i));
+    if (flat)
+        at = at * v_load(b->rd + i) - v_load(b->rc + i);
+    else
+        at = (at * v_load(b->wc + i) - v_load(b->rc + i)) / (v_load(b->rd + i) - at * v_load(b->wd + i));
+    return v_clamp(at, v_set(0.0f), v_load(b->to + i));
+}
+
+/* The integrals up to the edges that wait: those with an even number begin what differs from outside, those with an odd number
+ * end it. Only ratios of integrals count, so that they are without their 1 / sigma. */
+static TYNI_V_TARGET void TYNI_V(ray_settle)(tyni_bundle *b, const tyni_piece *piece, const float sigma[2])
+{
+    const int flat = is_flat(piece);
+    const float s0 = TYNI_V(ray_rate)(sigma[0]), s1 = TYNI_V(ray_rate)(sigma[1]);
+    const v_float zero = v_set(0.0f);
+    for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
+        const v_int edges = v_iload(b->edges + i);
+        v_float sum0 = v_load(b->visible[0] + i), sum1 = v_load(b->visible[1] + i);
+        v_mask some = v_igt(edges, v_iset(0));
+        v_float begin, end;
+        if (v_none(some))
+            continue;
+        begin = TYNI_V(ray_place)(b, piece, flat, i, 0);
+        end = TYNI_V(ray_place)(b, piece, flat, i, 1);
+        /* the next two places before the light of these: either is a long chain, and so they overlap */
+        for (int32_t e = 2; v_any(some); e += 2) {
+            const v_float t0 = begin, t1 = end;
+            const v_mask now = some;
+            v_float light0, light1;
+            some = v_igt(edges, v_iset(e));
+            if (v_any(some)) {
+                begin = TYNI_V(ray_place)(b, piece, flat, i, e);
+                end = TYNI_V(ray_place)(b, piece, flat, i, e + 1);
+            }
+            light0 = TYNI_V(ray_dimmed)(s0 * t1) - TYNI_V(ray_dimmed)(s0 * t0);
+            light1 = TYNI_V(ray_dimmed)(s1 * t1) - TYNI_V(ray_dimmed)(s1 * t0);
+            sum0 = sum0 + v_select(now, light0, zero);
+            sum1 = sum1 + v_select(now, light1, zero);
+        }
+        v_store(b->visible[0] + i, sum0);
+        v_store(b->visible[1] + i, sum1);
     }
+}
+
+/* From sums to visibility. */
+static TYNI_V_TARGET void TYNI_V(ray_visible)(tyni_bundle *b, int outside, const float sigma[2])
+{
+    for (int32_t k = 0; k < 2; k++)
+        for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
+            const v_float all = TYNI_V(ray_dimmed)(TYNI_V(ray_rate)(sigma[k]) * v_load(b->to + i)), zero = v_set(0.0f);
+            v_float lit = v_load(b->visible[k] + i);
+            if (outside)
+                lit = all - lit;
+            lit = v_clamp(lit, zero, all);
+            v_store(b->visible[k] + i, v_select(v_gt(all, zero), lit / all, zero));
+        }
 }

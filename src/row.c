@@ -188,3 +188,8 @@ void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *spli
             open[k].d[1] = f.d[0];
         }
 }
+
+void tyni_row_bound(const tyni_blocks *blocks, int32_t isa, const tyni_row *row)
+{
+    TYNI_LANES_CALL(isa, row_bound, (row->threshold, row->columns, blocks->low, blocks->high));
+}

@@ -59,6 +59,20 @@ static inline size_t tyni_row_room(int32_t shadow_size, int32_t maps)
 void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
                     const tyni_lamp *lamp, const tyni_view *view, float reach);
 
+/* Least and greatest threshold of each 64 columns of the row and of the one before them: a ray whose position is below all or
+ * none of them changes at none of the 64. */
+typedef struct tyni_blocks {
+    uint16_t *low, *high; /* tyni_row_blocks entries each; up to 31 behind the one in hand may be read */
+} tyni_blocks;
+
+/* Blocks of so many columns. */
+static inline size_t tyni_row_blocks(size_t columns)
+{
+    return (columns + 63) / 64;
+}
+
+void tyni_row_bound(const tyni_blocks *blocks, int32_t isa, const tyni_row *row);
+
 /* 0 .. 65534 */
 static inline uint32_t tyni_row_position(const tyni_row *row, float p)
 {

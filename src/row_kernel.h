@@ -43,3 +43,32 @@ static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cour
         v_istore_n(threshold + 2 * k, low_first ? v_ior(ta, v_shl(tb, 16)) : v_ior(tb, v_shl(ta, 16)), steps - k);
     }
 }
+
+static TYNI_V_TARGET void TYNI_V(row_bound)(const uint16_t *threshold, int32_t columns, uint16_t *low, uint16_t *high)
+{
+    for (int32_t i = 0; i < columns; i += 64, low++, high++) {
+        const int32_t from = tyni_maxi(i - 1, 0), end = tyni_mini(i + 64, columns);
+        int32_t least = threshold[from], most = least, c = i;
+        if (end == i + 64) {
+            int32_t lows[v_n], highs[v_n];
+            v_int l = v_load_u16(threshold + i), h = l;
+            for (c += v_n; c < end; c += v_n) {
+                const v_int t = v_load_u16(threshold + c);
+                l = v_imin(l, t);
+                h = v_imax(h, t);
+            }
+            v_istore(lows, l);
+            v_istore(highs, h);
+            for (int32_t k = 0; k < v_n; k++) {
+                least = tyni_mini(least, lows[k]);
+                most = tyni_maxi(most, highs[k]);
+            }
+        }
+        for (; c < end; c++) {
+            least = tyni_mini(least, threshold[c]);
+            most = tyni_maxi(most, threshold[c]);
+        }
+        *low = (uint16_t)least;
+        *high = (uint16_t)most;
+    }
+}

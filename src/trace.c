@@ -115,60 +115,50 @@ static void run_each(const tyni_pass *p, const tyni_slice *slice, const tyni_fin
     }
 }
 
-/* What a bundle has found, as visibility of the samples. */
-static void take_bundle(const tyni_pass *p, const tyni_slice *slice, const tyni_bundle *b, const int32_t *samples,
-                        const float sigma[2], tyni_scratch *s)
+/* The rays of a bundle's samples: their visibility. */
+static void run_bundle(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, tyni_scratch *s)
 {
+    tyni_bundle *b = s->bundle;
+    float sigma[2];
+    sigma[0] = p->medium.sigma[p->channels[0]];
+    sigma[1] = p->medium.sigma[p->channels[p->count - 1]];
+    s->stats->rays += b->count;
+    s->stats->looked += tyni_ray_bundle(b, finder, slice, &p->view, s->depth, p->frame->max_distance, p->lamp->outside, sigma);
     for (int32_t n = 0; n < b->count; n++) {
-        int32_t j = samples[n];
-        float value[3] = {0.0f, 0.0f, 0.0f};
-        if (b->texels[n] > 0.0f && tyni_ray_bundle_coarse(b, n, sigma[p->count - 1])) {
-            tyni_sight v;
-            float length = tyni_slice_sight(slice, &p->view, b->p[n], &v);
-            tyni_pass_walk(p, &v, s->depth[j] * length, value);
-            s->stats->walks++;
-        } else {
-            for (int32_t k = 0; k < p->count; k++) {
-                float all = b->all[k][n], lit = p->lamp->outside ? all - b->sum[k][n] : b->sum[k][n];
-                value[k] = all > 0.0f ? tyni_clampf(lit, 0.0f, all) / all : 0.0f;
-            }
-            if (p->count == 1)
-                value[1] = value[0];
-        }
+        s->value[0][b->sample[n]] = b->visible[0][n];
+        s->value[1][b->sample[n]] = b->visible[1][n];
+    }
+    for (uint32_t bits = b->coarse; bits; bits &= bits - 1) {
+        int32_t n = tyni_ctz32(bits), j;
+        tyni_sight v;
+        float length, value[3];
+        if (n >= b->count)
+            break;
+        j = b->sample[n];
+        length = tyni_slice_sight(slice, &p->view, tyni_slice_p(slice, j), &v);
+        tyni_pass_walk(p, &v, s->depth[j] * length, value);
         s->value[0][j] = value[0];
         s->value[1][j] = value[1];
-        s->value[2][j] = 0.0f;
+        s->stats->walks++;
     }
-    s->stats->rays += b->count;
 }
 
 /* The rays of the set bits, side by side. */
 static void run_bundles(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
                         tyni_scratch *s)
 {
-    const int32_t most = finder->rays == TYN_RAYS_SWEEP ? 1 : TYNI_RAY_BUNDLE;
-    int32_t samples[TYNI_RAY_BUNDLE], j = tyni_sample_next(rays, slice->first, slice->last);
     tyni_bundle *b = s->bundle;
-    float sigma[2];
-    sigma[0] = p->medium.sigma[p->channels[0]];
-    sigma[1] = p->medium.sigma[p->channels[p->count - 1]];
-    while (j <= slice->last) {
-        b->count = 0;
-        for (; j <= slice->last && b->count < most; j = tyni_sample_next(rays, j + 1, slice->last)) {
-            b->p[b->count] = tyni_slice_p(slice, j);
-            b->depth[b->count] = s->depth[j];
-            samples[b->count++] = j;
+    b->count = 0;
+    for (int32_t w = slice->first >> 5; w <= slice->last >> 5; w++)
+        for (uint32_t bits = rays[w]; bits; bits &= bits - 1) {
+            b->sample[b->count++] = 32 * w + tyni_ctz32(bits);
+            if (b->count == TYNI_RAY_BUNDLE) {
+                run_bundle(p, slice, finder, s);
+                b->count = 0;
+            }
         }
-        for (int32_t n = b->count; n < TYNI_RAY_BUNDLE; n++) {
-            b->p[n] = b->p[b->count - 1];
-            b->depth[n] = b->depth[b->count - 1];
-        }
-        tyni_ray_bundle(b, finder->isa, slice, &p->view, p->frame->max_distance, sigma);
-        if (finder->rays == TYN_RAYS_SWEEP)
-            tyni_sweep_to(&s->sweep, samples[0]);
-        s->stats->looked += tyni_ray_bundle_row(b, finder, p->lamp->outside, sigma, p->count);
-        take_bundle(p, slice, b, samples, sigma, s);
-    }
+    if (b->count)
+        run_bundle(p, slice, finder, s);
 }
 
 static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
@@ -188,6 +178,7 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     finder->row = s->row;
     finder->isa = config->isa;
     finder->rays = config->rays;
+    finder->blocks = &s->blocks;
     finder->tree = tree;
     finder->sweep = &s->sweep;
     if (config->rays == TYN_RAYS_STEPS && !tyni_prefilter_method(p->method))
@@ -195,6 +186,8 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,
                    p->lamp, &p->view, reach_of(p, slice, s->depth));
     s->stats->columns += s->row->columns;
+    if (config->rays == TYN_RAYS_WORDS)
+        tyni_row_bound(&s->blocks, config->isa, s->row);
     if (config->rays == TYN_RAYS_TREE)
         tyni_tree_build(tree, s->nodes, s->row);
     if (config->rays == TYN_RAYS_SWEEP)
@@ -286,6 +279,7 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     time[2] = tyni_pass_now(p);
     if (tyni_debug_marks(p->frame->debug))
         tyni_debug_mark_initial(p, index, &slice, s.rays, s.breaks);
+    memset(s.bundle, 0, sizeof *s.bundle);
     run_rays(p, &slice, &finder, s.rays, &s);
     memcpy(s.fresh, s.rays, sizeof *s.fresh * (size_t)tyni_sample_words(slice.last + 1));
     while (config->tolerance < 1.0f && tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2),

@@ -18,6 +18,8 @@ typedef struct bench {
     float split[STEPS];
     tyni_row row;
     tyni_slice slice;
+    uint16_t low[COLUMNS / 64 + 33], high[COLUMNS / 64 + 33];
+    tyni_blocks blocks;
     tyni_node nodes[COLUMNS / 2 + TYNI_TREE_LEVELS];
     tyni_tree tree;
     uint32_t order[COLUMNS], heads[SAMPLES + 1], bits[COLUMNS / 32 + 2];
@@ -81,6 +83,8 @@ static void set_up(bench *b, int pieces, int falling)
     b->row.p_start = tyni_slice_p(&b->slice, falling ? b->slice.last : b->slice.first);
     b->row.p_scale = b->slice.last > b->slice.first ? 65534.0f / (float)(b->slice.last - b->slice.first) : 0;
     b->row.p_scale = falling ? -b->row.p_scale : b->row.p_scale;
+    b->blocks.low = b->low;
+    b->blocks.high = b->high;
     b->sweep.order = b->order;
     b->sweep.heads = b->heads;
     b->sweep.bits = b->bits;
@@ -131,12 +135,13 @@ static void test_finders(void)
     TEST("tree, sweep, words and columns give the untraversed march's bytes");
     for (int n = 0; n < 1500; n++) {
         set_up(&b, 1 + (int)(test_random() & 1u), (int)(test_random() & 1u));
+        tyni_row_bound(&b.blocks, TYN_ISA_SCALAR, &b.row);
         tyni_tree_build(&b.tree, b.nodes, &b.row);
         tyni_sweep_begin(&b.sweep, &b.row, &b.slice);
         for (int k = 0; k < 12; k++) {
             int sample = b.slice.first + (int)(test_random() % (uint32_t)(b.slice.last - b.slice.first + 1));
             float p = tyni_slice_p(&b.slice, sample), truth[2], light[2];
-            tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_WORDS, &b.tree, &b.sweep};
+            tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_WORDS, &b.blocks, &b.tree, &b.sweep};
             tyni_integral it;
             tyni_sight v;
             random_ray(&b, &v, &it);
@@ -147,8 +152,13 @@ static void test_finders(void)
                 if (way == TYN_RAYS_STEPS)
                     continue;
                 light[0] = light[1] = -1;
-                CHECK(tyni_ray_row(&f, p, &b.lamp, &it, &v, light) >= 0);
-                CHECK(memcmp(light, truth, sizeof light) == 0);
+                for (f.isa = TYN_ISA_SCALAR; f.isa <= (way == TYN_RAYS_WORDS ? tyn_isa_available() : 1); f.isa *= 2) {
+                    if (!(f.isa & tyn_isa_available()))
+                        continue;
+                    CHECK(tyni_ray_row(&f, p, &b.lamp, &it, &v, light) >= 0);
+                    CHECK(memcmp(light, truth, sizeof light) == 0);
+                    light[0] = light[1] = -1;
+                }
             }
         }
     }
@@ -243,7 +253,7 @@ static void test_tree_work(void)
     int64_t nodes = 0, columns = 0;
     TEST("the tree's work");
     for (int n = 0; n < 500; n++) {
-        tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_TREE, &b.tree, &b.sweep};
+        tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_TREE, &b.blocks, &b.tree, &b.sweep};
         tyni_integral it;
         tyni_sight v;
         float light[2];
