@@ -109,6 +109,9 @@ $(B)/flags: FORCE
 $(B)/sources: FORCE
 	@mkdir -p $(B); echo '$(LIB_SRC) $(PORT_SRC) $(TEST_SRC)' | cmp -s - $@ || echo '$(LIB_SRC) $(PORT_SRC) $(TEST_SRC)' >$@
 
+# What each port adds.
+include $(wildcard ports/*/port.mk)
+
 -include $(patsubst %.o,%.d,$(call OBJ,$(LIB_SRC) $(PORT_SRC) $(TEST_SRC) $(wildcard tests/bench/*.c)))
 
 # ---- deliver -------------------------------------------------------------------------------------------------------------

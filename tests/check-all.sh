@@ -1,7 +1,7 @@
 #!/bin/sh
 # check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; a fresh clone as the
 # README has it; and renders of the shared data. About a quarter of an hour on 2 cores. What a machine lacks is SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions clone shared
+#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions ports clone shared
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -105,6 +105,10 @@ check_valgrind() {
 
 check_instructions() {
     part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/instructions.sh
+}
+
+check_ports() {
+    part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/ports.sh bare
 }
 
 # The commands that stand in the README, in a clone of what is committed.
@@ -258,7 +262,7 @@ check_shared() {
     if [ -d "$shared/data" ]; then check_models; else skip "no $shared/data"; fi
 }
 
-for check in format compilers sanitizers valgrind instructions clone shared; do
+for check in format compilers sanitizers valgrind instructions ports clone shared; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)

@@ -15,7 +15,7 @@ export B CC CFLAGS MAKE
     done
 } &
 part "$B/tests" -accuracy -art -workers -fourier -door -door_maps -door_windows
-for script in proofs_calls tool post; do
+for script in proofs_calls tool post ports; do
     part sh tests/$script.sh
 done
 wait
