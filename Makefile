@@ -23,7 +23,7 @@ TEST_SRC := $(filter-out tests/fuzz_%.c,$(wildcard tests/*.c))
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
 C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-.PHONY: all run test check-all bench bench-raster bench-prefiltered golden install uninstall single format format-check clean help FORCE
+.PHONY: all run test check-all bench bench-raster bench-prefiltered size golden install uninstall single format format-check clean help FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -51,6 +51,10 @@ bench-raster: $(B)/bench-raster
 bench-prefiltered: $(B)/bench-prefiltered
 	@mkdir -p $(B)/prefiltered
 	$(B)/bench-prefiltered $(B)/prefiltered
+
+# Text, data, bss and stack by configuration and part.
+size:
+	@B=$(B) sh tests/size.sh
 
 # Rewrites tests/golden.txt and puts the pictures where one can look at them.
 golden: $(B)/tests
@@ -150,6 +154,7 @@ help:
 	@echo 'make bench      times against a plain pass over the pixels'
 	@echo 'make bench-raster  the rasterizer, every ISA, and against llvmpipe where EGL and GL are installed'
 	@echo 'make bench-prefiltered  tables and pictures of prefiltered rows'
+	@echo 'make size       text, data, bss and stack of the library and its parts'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
 	@echo 'make single     the library as two files, build/single/tyndall.[ch]'
 	@echo 'make install    to PREFIX=/usr/local, below DESTDIR; make uninstall takes it away again'

@@ -109,6 +109,7 @@ check_instructions() {
 
 check_ports() {
     part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/ports.sh bare
+    part sh tests/size.sh
 }
 
 # The commands that stand in the README, in a clone of what is committed.

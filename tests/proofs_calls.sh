@@ -1,5 +1,6 @@
 #!/bin/sh
 # proofs_calls.sh - the call graph as gcc sees it: no recursion, and how much stack a public call takes at most.
+# Leaves the figure of each in $B/proofs_calls/stack. $OPTIMISE: flags in place of -O2.
 # A job runs below the executor, so its stack is counted on top of the call that starts it; the executor's own is not ours.
 . tests/shell.sh
 
@@ -23,7 +24,7 @@ rm -f "$work"/probe.*
 for file in src/*.c src/*/*.c; do
     [ -f "$file" ] || continue
     name=$(echo "${file#src/}" | tr / _)
-    if ! $gcc -std=c99 -O2 -ffp-contract=off -fno-optimize-sibling-calls -Iinclude -Isrc -fstack-usage -fcallgraph-info=su -c -o "$work/${name%.c}.o" "$file"; then
+    if ! $gcc -std=c99 ${OPTIMISE:--O2} -ffp-contract=off -fno-optimize-sibling-calls -Iinclude -Isrc -fstack-usage -fcallgraph-info=su -c -o "$work/${name%.c}.o" "$file"; then
         fail "$file compiles"
     fi
 done
@@ -111,6 +112,7 @@ END {
     for (f in frame) depth(f)
     for (i = 1; i <= publics; i++) {
         f = public[i]
+        print f, total[f] > stack_file
         if (total[f] > limit) complain(f ": " total[f] " bytes of stack")
         if (total[f] > total[worst]) worst = f
     }
@@ -119,7 +121,7 @@ END {
         chain = chain " > " next_of[f] " " frame[next_of[f]]
     print "stack, without libc and the executor: " total[worst] " bytes at most: " chain > "/dev/stderr"
     print publics > count_file
-}' jobs_file="$work/jobs" count_file="$work/count" "$work/jobs" "$work"/*.ci >"$work/complaints" 2>"$work/summary"
+}' jobs_file="$work/jobs" count_file="$work/count" stack_file="$work/stack" "$work/jobs" "$work"/*.ci >"$work/complaints" 2>"$work/summary"
 cat "$work/summary"
 empty 'no recursion, no dynamic stack, no unknown pointers' "$(grep -v 'bytes of stack' "$work/complaints")"
 empty "no public call takes more than $limit bytes of stack" "$(grep 'bytes of stack' "$work/complaints")"
