@@ -62,6 +62,18 @@ const char *tyn_status_name(tyn_status status);
 /* "0.1.0": of the library that is linked, for comparison with TYN_VERSION. */
 const char *tyn_version(void);
 
+/* ---- a smaller library --------------------------------------------------------------------------------------------- */
+
+/* Compiled with -DTYN_LEAVE_OUT=N, N the sum of some of these, the library lacks them; the rest gives the same bytes. What asks
+ * for one that is not there gets the status in brackets. (What is never called the linker leaves out:
+ * -ffunction-sections -fdata-sections, -Wl,--gc-sections.) */
+#define TYN_PART_PREFILTERED 1 /* TYN_METHOD_PREFILTERED and _HYBRID (TYN_E_CONFIG) */
+#define TYN_PART_DEBUG 2       /* debug views (TYN_E_DISPLAY) */
+#define TYN_PART_GATHERS 4     /* TYN_GATHER_IVB and _ED10, downscale, TYN_METHOD_SUBSAMPLE (TYN_E_CONFIG) */
+#define TYN_PART_RAYS 8        /* all of tyn_rays but TYN_RAYS_WORDS (TYN_E_CONFIG) */
+#define TYN_PART_SLIDES 16     /* in tyn_render and tyn_query: textures, tints (TYN_E_LIMIT), config.textured (TYN_E_CONFIG) */
+#define TYN_PART_LAMPS 32      /* spot and point lights (TYN_E_LIGHT) */
+
 /* ---- work in parallel ---------------------------------------------------------------------------------------------- */
 
 /* One job of a stage. `index` counts 0 .. count - 1; `worker` is 0 .. workers - 1. */

@@ -37,6 +37,12 @@
 #define TYNI_NOINLINE
 #endif
 
+/* Whether the build has a part, see TYN_LEAVE_OUT. */
+#ifndef TYN_LEAVE_OUT
+#define TYN_LEAVE_OUT 0
+#endif
+#define TYNI_HAS(part) (!((TYN_LEAVE_OUT) & (part)))
+
 #define TYNI_PI 3.14159265358979f
 
 static inline int32_t tyni_mini(int32_t a, int32_t b)

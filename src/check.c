@@ -140,7 +140,8 @@ static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)
 static tyn_status check_light(const tyn_light *l, int32_t shadow_limit, int32_t map_limit)
 {
     tyn_status status;
-    if ((uint32_t)l->kind > (uint32_t)TYN_LIGHT_POINT || (uint32_t)l->outside > (uint32_t)TYN_OUTSIDE_DARK)
+    if ((uint32_t)l->kind > (uint32_t)(TYNI_HAS(TYN_PART_LAMPS) ? TYN_LIGHT_POINT : TYN_LIGHT_DIRECTIONAL) ||
+        (uint32_t)l->outside > (uint32_t)TYN_OUTSIDE_DARK)
         return TYN_E_LIGHT;
     if (!tyni_check_colour(l->colour) || (l->kind != TYN_LIGHT_POINT && !unit(l->direction)))
         return TYN_E_LIGHT;

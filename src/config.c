@@ -46,6 +46,15 @@ static int outside(int32_t x, int32_t low, int32_t high)
     return x < low || x > high;
 }
 
+/* What this build has left out. */
+static int absent(const tyn_config *c)
+{
+    int prefiltered = c->method == TYN_METHOD_PREFILTERED || c->method == TYN_METHOD_HYBRID;
+    int gathers = c->gather != TYN_GATHER_SHEAR || c->downscale > 1 || c->method == TYN_METHOD_SUBSAMPLE;
+    return (!TYNI_HAS(TYN_PART_PREFILTERED) && prefiltered) || (!TYNI_HAS(TYN_PART_GATHERS) && gathers) ||
+           (!TYNI_HAS(TYN_PART_RAYS) && c->rays != TYN_RAYS_WORDS) || (!TYNI_HAS(TYN_PART_SLIDES) && c->textured);
+}
+
 /* What prefiltered rows are made of. */
 static tyn_status fill_rows(tyn_config *c, const tyn_config *preset)
 {
@@ -90,5 +99,5 @@ tyn_status tyni_config_fill(tyn_config *c)
         return TYN_E_CONFIG;
     if (outside(c->taps, 3, 5) || outside(c->downscale, 1, 8) || (c->downscale & (c->downscale - 1)) || c->budget < 0)
         return TYN_E_CONFIG;
-    return fill_rows(c, &preset);
+    return absent(c) ? TYN_E_CONFIG : fill_rows(c, &preset);
 }

@@ -49,7 +49,7 @@ static uint32_t mark_at(const tyni_pass *p, int32_t x, int32_t y)
     float distance;
     if (!tyni_pass_nearest(p, (float)x + 0.5f, (float)y + 0.5f, &line, &sample, &distance) || distance > 0.5f)
         return MARK_NONE;
-    if (p->slices.layout == TYNI_LAYOUT_SHEAR && p->slices.stride > 1) { /* between samples there is nothing to show */
+    if (!tyni_slice_bordered(&p->slices) && p->slices.stride > 1) { /* between samples there is nothing to show */
         float k;
         pixel = tyni_slice_find(&p->slices, (float)x + 0.5f, (float)y + 0.5f, &k)->along_y ? y : x;
         if (pixel % p->slices.stride)
@@ -93,7 +93,7 @@ static void paint_basis(const tyni_pass *p, int32_t x, int32_t y, float rgb[3])
     int32_t line = (int32_t)((int64_t)y * p->slices.count / p->view.height);
     int32_t column = (int32_t)((int64_t)x * p->fourier.columns / p->view.width);
     paint(rgb, 0.1f, 0.0f, 0.1f);
-    if (p->method == TYN_METHOD_PREFILTERED)
+    if (tyni_prefilter_kept(p->method))
         tyni_fourier_show(&p->fourier, (const void *)(p->context->shelves + (size_t)line * p->context->shelf_bytes), column,
                           rgb);
 }
@@ -130,7 +130,7 @@ void tyni_debug_pixel(const tyni_pass *p, int32_t x, int32_t y, float depth, int
             paint(rgb, 3.0f, 0.0f, 3.0f);
     } else if (debug == TYN_DEBUG_REJECTED) {
         if (rejected)
-            paint(rgb, 5.0f, p->grid.rows ? 4.0f : 0.0f, 0.0f);
+            paint(rgb, 5.0f, tyni_pass_gridded(p) ? 4.0f : 0.0f, 0.0f);
     } else if (!p->slices.count) {
         return; /* no epipolar pass: nothing to show */
     } else if (debug == TYN_DEBUG_SCATTER || debug == TYN_DEBUG_SOURCES) {

@@ -9,7 +9,8 @@
 /* Views for which a line holds what each sample is in place of its light. */
 static inline int tyni_debug_marks(tyn_debug debug)
 {
-    return debug == TYN_DEBUG_LINES || debug == TYN_DEBUG_SAMPLES || debug == TYN_DEBUG_BREAKS || debug == TYN_DEBUG_SOURCES;
+    return TYNI_HAS(TYN_PART_DEBUG) &&
+           (debug == TYN_DEBUG_LINES || debug == TYN_DEBUG_SAMPLES || debug == TYN_DEBUG_BREAKS || debug == TYN_DEBUG_SOURCES);
 }
 
 /* Writes it: first what the initial rays and breaks are; after refinement the new rays, and of each sample its first source. */

@@ -20,9 +20,9 @@ static void choose_channels(tyni_pass *p)
 {
     const tyni_medium *m = &p->medium;
     float apart = (m->sigma[m->high] - m->sigma[m->low]) * p->view.far_depth;
-    int all = p->lamp->coloured || p->method == TYN_METHOD_PREFILTERED || (p->context->lines.thirds && apart > 0.5f);
+    int all = tyni_view_coloured(p->lamp) || tyni_prefilter_kept(p->method) || (p->context->lines.thirds && apart > 0.5f);
     p->count = all ? 3 : 2;
-    if (!all && apart == 0.0f && p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
+    if (!all && apart == 0.0f && tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL)
         p->count = 1;
     p->channels[0] = all ? 0 : m->low;
     p->channels[1] = all ? 1 : m->high;
@@ -43,7 +43,7 @@ static void begin_light(tyni_pass *p, const tyn_light *light)
     }
     /* at the light's own position there is no epipole, and a ray stays inside one texel: a ray for each pixel costs nothing */
     if (tyni_prefilter_method(p->method) && p->view.orthographic)
-        p->method = p->method == TYN_METHOD_HYBRID ? TYN_METHOD_EPIPOLAR : TYN_METHOD_MARCH;
+        p->method = tyni_prefilter_hybrid(p->method) ? TYN_METHOD_EPIPOLAR : TYN_METHOD_MARCH;
     if ((p->method == TYN_METHOD_EPIPOLAR || tyni_prefilter_method(p->method)) && p->lamp->no_epipole)
         p->method = TYN_METHOD_MARCH;
     if (tyni_prefilter_method(p->method))
@@ -56,9 +56,10 @@ static void begin_light(tyni_pass *p, const tyn_light *light)
     memset(&p->slices, 0, sizeof p->slices);
     memset(&p->grid, 0, sizeof p->grid);
     p->naive = 0;
-    if (p->method == TYN_METHOD_SUBSAMPLE)
+    if (TYNI_HAS(TYN_PART_GATHERS) && p->method == TYN_METHOD_SUBSAMPLE)
         tyni_trace_spread(p);
-    else if (p->method != TYN_METHOD_NONE && c->config.method != TYN_METHOD_PREFILTERED && c->config.downscale > 1)
+    else if (TYNI_HAS(TYN_PART_GATHERS) && p->method != TYN_METHOD_NONE && !tyni_prefilter_kept(c->config.method) &&
+             c->config.downscale > 1)
         tyni_trace_coarse(p);
     choose_channels(p);
 }
@@ -68,17 +69,16 @@ static tyn_status render_light(tyni_pass *p, const tyni_jobs *jobs, const tyn_li
     tyn_status status = TYN_OK;
     uint64_t start = tyni_pass_now(p), middle;
     begin_light(p, light);
-    if (p->method == TYN_METHOD_PREFILTERED || tyni_pass_sliced(p)) {
+    if (tyni_prefilter_kept(p->method) || tyni_pass_sliced(p)) {
         tyni_trace_layout(p);
-        status =
-            tyni_jobs_run(jobs, p->method == TYN_METHOD_PREFILTERED ? tyni_trace_shelf : tyni_trace_slice, p, p->slices.count);
+        status = tyni_jobs_run(jobs, tyni_prefilter_kept(p->method) ? tyni_trace_shelf : tyni_trace_slice, p, p->slices.count);
     }
     middle = tyni_pass_now(p);
-    if (status == TYN_OK)
+    if (status == TYN_OK && tyni_pass_gridded(p))
         status = tyni_jobs_run(jobs, tyni_trace_grid, p, p->grid.rows);
     if (status == TYN_OK)
         status = tyni_jobs_run(jobs, tyni_pixel_band, p, (p->view.height + TYNI_PIXEL_BAND - 1) / TYNI_PIXEL_BAND);
-    if (status == TYN_OK && (p->frame->debug == TYN_DEBUG_ROW || p->frame->debug == TYN_DEBUG_TREE))
+    if (TYNI_HAS(TYN_PART_DEBUG) && status == TYN_OK && (p->frame->debug == TYN_DEBUG_ROW || p->frame->debug == TYN_DEBUG_TREE))
         tyni_chart_draw(p);
     stats->slice_ns += middle - start;
     stats->gather_ns += tyni_pass_now(p) - middle;
@@ -185,19 +185,19 @@ void tyni_frame_place(tyn_context *c, tyni_arena *arena)
     int32_t longer = tyni_maxi(g->width, g->height);
     tyni_scratch s;
     c->samples = c->points = tyni_mini(g->samples, longer);
-    if (g->downscale > 1 &&
-        g->method != TYN_METHOD_PREFILTERED) { /* a row of the coarse picture goes through the scratch of a line */
+    /* a row of the coarse picture goes through the scratch of a line */
+    if (g->downscale > 1 && !tyni_prefilter_kept(g->method)) {
         c->points = tyni_maxi(c->samples, tyni_slice_points(g->width, g->downscale));
         place_field(&c->grid, arena, (size_t)tyni_slice_points(g->height, g->downscale),
                     (size_t)tyni_slice_points(g->width, g->downscale), g->textured);
     }
-    if (g->method == TYN_METHOD_PREFILTERED) {
+    if (tyni_prefilter_kept(g->method)) {
         c->shelf_bytes = tyni_prefilter_bytes(g);
         c->shelves = tyni_arena_take(arena, (size_t)g->slices, c->shelf_bytes);
     } else {
         place_field(&c->lines, arena, (size_t)g->slices, (size_t)c->samples, g->textured);
     }
-    if (g->gather != TYN_GATHER_SHEAR && g->method != TYN_METHOD_PREFILTERED) {
+    if (g->gather != TYN_GATHER_SHEAR && !tyni_prefilter_kept(g->method)) {
         c->spokes = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->spokes);
         c->slots = tyni_arena_take(arena, (size_t)g->slices, sizeof *c->slots);
     }

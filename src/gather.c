@@ -205,9 +205,9 @@ static int gather_ed10(const tyni_gather *gather, const tyni_field *field, const
 int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
                       float depth, float value[3])
 {
-    if (gather->way == TYN_GATHER_IVB)
+    if (TYNI_HAS(TYN_PART_GATHERS) && gather->way == TYN_GATHER_IVB)
         return gather_ivb(field, slices, x, y, depth, value);
-    if (gather->way == TYN_GATHER_ED10)
+    if (TYNI_HAS(TYN_PART_GATHERS) && gather->way == TYN_GATHER_ED10)
         return gather_ed10(gather, field, slices, x, y, depth, value);
     return gather_shear(field, slices, x, y, depth, value);
 }

@@ -75,7 +75,7 @@ void tyni_integral_density(const tyni_medium *medium, const tyni_lamp *lamp, con
 {
     tyni_vec3 to = tyni_vec_sub(lamp->position, tyni_sight_at(v, t)); /* from the point to the light */
     float r2 = tyni_maxf(tyni_vec_dot(to, to), lamp->radius * lamp->radius), r = sqrtf(r2);
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+    if (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
             density[c] = tyni_num_exp(-medium->sigma[c] * t);
         return;
@@ -191,18 +191,23 @@ static void tabulate(tyni_integral *it, const tyni_medium *medium, const tyni_la
     }
 }
 
+static int is_local(const tyni_integral *it)
+{
+    return TYNI_HAS(TYN_PART_LAMPS) && it->local;
+}
+
 void tyni_integral_begin(tyni_integral *it, const tyni_medium *medium, const tyni_lamp *lamp, const tyni_sight *v, float t0,
                          float t1, const int32_t *channels, int32_t count)
 {
     it->count = count;
     it->t0 = t0;
     it->t1 = t1;
-    it->local = lamp->kind != TYN_LIGHT_DIRECTIONAL;
+    it->local = tyni_view_kind(lamp) != TYN_LIGHT_DIRECTIONAL;
     for (int32_t i = 0; i < count; i++) {
         it->channels[i] = channels[i];
         it->sigma[i] = medium->sigma[channels[i]];
     }
-    if (it->local && t1 > t0)
+    if (is_local(it) && t1 > t0)
         tabulate(it, medium, lamp, v);
 }
 
@@ -222,17 +227,17 @@ float tyni_integral_variable(const tyni_integral *it, float t)
 {
     const tyni_path *p = &it->path;
     t = tyni_clampf(t, it->t0, it->t1);
-    return it->local ? tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h) : t;
+    return is_local(it) ? tyni_num_atan2(p->h * (t - p->t0), p->from * (t - p->near_t) + p->h * p->h) : t;
 }
 
 float tyni_integral_t(const tyni_integral *it, float variable)
 {
-    return it->local ? path_t(&it->path, variable) : variable;
+    return is_local(it) ? path_t(&it->path, variable) : variable;
 }
 
 void tyni_integral_at_variable(const tyni_integral *it, float x, float *out)
 {
-    if (it->local) {
+    if (is_local(it)) {
         hermite(it, unwarp(it, x) * (float)(it->knots - 1), out);
         return;
     }
@@ -256,7 +261,7 @@ void tyni_integral_norm(const tyni_medium *medium, const tyni_lamp *lamp, const 
     static const float weight[4] = {0.173927423f, 0.326072577f, 0.326072577f, 0.173927423f};
     float value[3];
     tyni_path p;
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+    if (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
             norm[c] = t1 * tyni_num_fog(medium->sigma[c] * t1) - t0 * tyni_num_fog(medium->sigma[c] * t0);
         return;

@@ -20,14 +20,14 @@ static TYNI_NOINLINE int32_t colour_parts(const tyni_meter *m, float ta, float t
 {
     const tyni_lamp *lamp = m->lamp;
     float texels = 0.0f;
-    for (int32_t i = 0; i < lamp->slide_count + lamp->map_count; i++) {
-        const tyni_form *s = i < lamp->slide_count ? &lamp->slides[i].s : &lamp->maps[i - lamp->slide_count].u;
-        const tyni_form *t = i < lamp->slide_count ? &lamp->slides[i].t : &lamp->maps[i - lamp->slide_count].v;
-        const tyni_form *w = i < lamp->slide_count ? &lamp->slides[i].w : &lamp->maps[i - lamp->slide_count].w;
+    for (int32_t i = 0; i < tyni_view_slides(lamp) + lamp->map_count; i++) {
+        const tyni_form *s = i < tyni_view_slides(lamp) ? &lamp->slides[i].s : &lamp->maps[i - tyni_view_slides(lamp)].u;
+        const tyni_form *t = i < tyni_view_slides(lamp) ? &lamp->slides[i].t : &lamp->maps[i - tyni_view_slides(lamp)].v;
+        const tyni_form *w = i < tyni_view_slides(lamp) ? &lamp->slides[i].w : &lamp->maps[i - tyni_view_slides(lamp)].w;
         tyni_vec3 a = tyni_sight_at(m->v, ta), b = tyni_sight_at(m->v, tb);
         float wa = tyni_form_at(w, a), wb = tyni_form_at(w, b), ds, dt, scale = 1.0f;
-        if (i >= lamp->slide_count) {
-            const tyni_map *map = &lamp->maps[i - lamp->slide_count];
+        if (i >= tyni_view_slides(lamp)) {
+            const tyni_map *map = &lamp->maps[i - tyni_view_slides(lamp)];
             if (!map->tint)
                 continue;
             scale =
@@ -42,7 +42,8 @@ static TYNI_NOINLINE int32_t colour_parts(const tyni_meter *m, float ta, float t
         texels = tyni_maxf(texels, scale * (tyni_absf(ds) + tyni_absf(dt)));
     }
     /* four to a texel while that is cheap: the integrand varies as well */
-    return 2 + (int32_t)tyni_minf(tyni_minf(4.0f * texels, texels + 96.0f), lamp->kind == TYN_LIGHT_POINT ? 1024.0f : 4096.0f);
+    return 2 + (int32_t)tyni_minf(tyni_minf(4.0f * texels, texels + 96.0f),
+                                  tyni_view_kind(lamp) == TYN_LIGHT_POINT ? 1024.0f : 4096.0f);
 }
 
 /* The integral from ta to tb, times the light's colour column by column. */
@@ -68,7 +69,7 @@ void tyni_meter_lit(tyni_meter *m, int lit, float t)
     if (on == m->on)
         return;
     m->on = on;
-    if (m->lamp->coloured) {
+    if (tyni_view_coloured(m->lamp)) {
         if (!on && t > m->from)
             coloured(m, m->from, t);
         m->from = t;
@@ -82,7 +83,7 @@ void tyni_meter_lit(tyni_meter *m, int lit, float t)
 static void settle(tyni_meter *m)
 {
     float all[3], shade[3];
-    if (m->outside && m->lamp->coloured) {
+    if (m->outside && tyni_view_coloured(m->lamp)) {
         memcpy(shade, m->sum, sizeof *shade * (size_t)m->integral->count);
         for (int32_t i = 0; i < m->integral->count; i++)
             m->sum[i] = 0.0f;
@@ -91,7 +92,7 @@ static void settle(tyni_meter *m)
             m->sum[i] = tyni_maxf(m->sum[i] - shade[i], 0.0f);
         return;
     }
-    if (m->lamp->coloured) {
+    if (tyni_view_coloured(m->lamp)) {
         for (int32_t i = 0; i < m->integral->count; i++)
             m->sum[i] = tyni_maxf(m->sum[i], 0.0f); /* differences of rounded sums */
         return;
@@ -110,7 +111,7 @@ static void lift(tyni_meter *m)
     memcpy(lit, m->sum, sizeof *lit * (size_t)m->integral->count);
     for (int32_t i = 0; i < m->integral->count; i++)
         m->sum[i] = 0.0f;
-    if (m->lamp->coloured)
+    if (tyni_view_coloured(m->lamp))
         coloured(m, m->integral->t0, m->integral->t1);
     else
         tyni_integral_at(m->integral, m->integral->t1, m->sum);

@@ -37,13 +37,13 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);
     s->stats = tyni_arena_take(&arena, 1, TYN_STATS_BYTES);
-    if (c->config.method == TYN_METHOD_HYBRID)
+    if (tyni_prefilter_hybrid(c->config.method))
         s->shelf = tyni_arena_take(&arena, 1, tyni_prefilter_bytes(&c->config));
     if (tyni_prefilter_method(c->config.method))
         s->mill = tyni_arena_take(&arena, 1, tyni_prefilter_scratch(&c->config));
-    if (c->config.rays == TYN_RAYS_TREE)
+    if (tyni_ray_way(c->config.rays, TYN_RAYS_TREE))
         s->nodes = tyni_arena_take(&arena, tyni_tree_room(columns), sizeof *s->nodes);
-    if (c->config.rays == TYN_RAYS_SWEEP) {
+    if (tyni_ray_way(c->config.rays, TYN_RAYS_SWEEP)) {
         s->sweep.order = tyni_arena_take(&arena, columns, sizeof *s->sweep.order);
         s->sweep.bits = tyni_arena_take(&arena, tyni_sweep_words(columns), sizeof *s->sweep.bits);
         s->sweep.heads = tyni_arena_take(&arena, samples + 1, sizeof *s->sweep.heads);
@@ -59,7 +59,7 @@ uint64_t tyni_pass_now(const tyni_pass *p)
 
 void tyni_pass_line(const tyni_pass *p, tyni_slice *slice, int32_t index)
 {
-    if (p->slices.layout == TYNI_LAYOUT_BORDER)
+    if (tyni_slice_bordered(&p->slices))
         tyni_border_line(slice, &p->slices, p->lamp, &p->view, index);
     else
         tyni_slice_line(slice, &p->slices, p->lamp, &p->view, index);
@@ -72,7 +72,7 @@ static int nearest_slice(const tyni_pass *p, float x, float y, int32_t *index)
     float k;
     if (!p->slices.count)
         return 0;
-    if (p->slices.layout == TYNI_LAYOUT_BORDER) {
+    if (tyni_slice_bordered(&p->slices)) {
         if (!tyni_border_find(&p->slices, x, y, slot, &k))
             return 0;
         *index = tyni_border_slice(&p->slices, slot[k > 0.5f]);
@@ -94,7 +94,7 @@ int tyni_pass_nearest(const tyni_pass *p, float x, float y, int32_t *index, int3
     m = s.along_y ? x : y;
     *distance = tyni_absf(m - (s.m0 + s.slope * at)) / sqrtf(1.0f + s.slope * s.slope);
     /* nearest along the line: move to the foot of the perpendicular */
-    if (p->slices.layout == TYNI_LAYOUT_BORDER)
+    if (tyni_slice_bordered(&p->slices))
         at += s.slope * (m - (s.m0 + s.slope * at)) / (1.0f + s.slope * s.slope);
     *sample = (int32_t)(tyni_clampf((at - s.p0) / s.dp, 0.0f, end) + 0.5f);
     return 1;
@@ -122,7 +122,7 @@ void tyni_pass_walk(const tyni_pass *p, const tyni_sight *v, float s, float valu
     value[0] = value[1] = value[2] = 0.0f;
     if (!tyni_pass_range(p, v, s, &t0, &t1))
         return;
-    if (config->rays == TYN_RAYS_STEPS) {
+    if (tyni_ray_way(config->rays, TYN_RAYS_STEPS)) {
         tyni_walk_steps(config->isa, p->lamp, &p->medium, v, t0, t1, config->steps, all);
         for (int32_t i = 0; i < p->count; i++)
             light[i] = all[p->channels[i]];

@@ -81,7 +81,13 @@ struct tyn_context {
 /* Lines of finished samples: epipolar or hybrid. */
 static inline int tyni_pass_sliced(const tyni_pass *p)
 {
-    return p->method == TYN_METHOD_EPIPOLAR || p->method == TYN_METHOD_HYBRID;
+    return p->method == TYN_METHOD_EPIPOLAR || tyni_prefilter_hybrid(p->method);
+}
+
+/* Pixels come from a grid: sub-sampled, or coarse. */
+static inline int tyni_pass_gridded(const tyni_pass *p)
+{
+    return TYNI_HAS(TYN_PART_GATHERS) && p->grid.rows;
 }
 
 /* A worker's scratch, and its bytes; before it is placed, only the bytes. */

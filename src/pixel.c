@@ -29,7 +29,7 @@ typedef struct run {
 /* Visibility from lines or from the grid; 0: nothing fits. `at`: depth relative to far. */
 static int visible(const tyni_pass *p, float px, float py, float at, float value[3])
 {
-    if (!p->grid.rows)
+    if (!tyni_pass_gridded(p))
         return tyni_gather_lines(&p->gather, &p->lines, &p->slices, px, py, at, value);
     if (tyni_gather_grid(&p->grid, px, py, at, value))
         return 1;
@@ -102,7 +102,7 @@ static void unwarp_shear(const tyni_pass *p, const run *r)
         if (!s->count) /* the epipole's own pixel, or a corner lost to rounding: any will do, its samples are weighed */
             for (s = g->sectors; !s->count && s < g->sectors + 3; s++)
                 ;
-        if (next > x && p->method == TYN_METHOD_PREFILTERED)
+        if (next > x && tyni_prefilter_kept(p->method))
             unwarp_rows(p, r, s, x - r->x, next - r->x);
         else if (next > x)
             TYNI_LANES_CALL(p->context->config.isa, pixel_unwarp, (p, r, s, x - r->x, next - r->x));
@@ -113,7 +113,7 @@ static void unwarp_shear(const tyni_pass *p, const run *r)
 /* Pixel by pixel: other lines, grids, and three channels. */
 static void unwarp_each(const tyni_pass *p, const run *r)
 {
-    int rays = p->method == TYN_METHOD_MARCH && !p->grid.rows;
+    int rays = p->method == TYN_METHOD_MARCH && !tyni_pass_gridded(p);
     for (int32_t i = 0; i < r->count; i++) {
         float px = (float)(r->x + i) + 0.5f, py = (float)r->y + 0.5f, value[3];
         if (!(r->to[i] > 0.0f))
@@ -152,15 +152,15 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
         memset(r->from, 0, sizeof *r->from * (size_t)r->count);
         r->to = r->reach;
     }
-    if (p->method == TYN_METHOD_PREFILTERED)
+    if (tyni_prefilter_kept(p->method))
         unwarp_shear(p, r);
-    else if (tyni_pass_sliced(p) && p->slices.layout == TYNI_LAYOUT_SHEAR && !p->grid.rows && p->count < 3)
+    else if (tyni_pass_sliced(p) && !tyni_slice_bordered(&p->slices) && !tyni_pass_gridded(p) && p->count < 3)
         unwarp_shear(p, r);
     else
         unwarp_each(p, r);
-    if (p->method == TYN_METHOD_MARCH && !p->grid.rows)
+    if (p->method == TYN_METHOD_MARCH && !tyni_pass_gridded(p))
         return;
-    if (p->lamp->kind == TYN_LIGHT_DIRECTIONAL)
+    if (tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL)
         TYNI_LANES_CALL(isa, pixel_shade, (p, r));
     else
         TYNI_LANES_CALL(isa, pixel_shade_local, (p, r));
@@ -169,10 +169,9 @@ static void unwarp(const tyni_pass *p, run *r, float *const plane[2])
 /* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. */
 static void correct(const tyni_pass *p, const run *r)
 {
-    int32_t steps = p->context->config.rays == TYN_RAYS_STEPS ? p->context->config.steps : 0, count = 0;
+    int32_t steps = tyni_ray_way(p->context->config.rays, TYN_RAYS_STEPS) ? p->context->config.steps : 0, count = 0;
     /* where a line's samples are some pixels apart, so may the texels be */
-    int32_t pace =
-        p->method == TYN_METHOD_EPIPOLAR && p->slices.layout == TYNI_LAYOUT_SHEAR ? tyni_maxi(p->slices.stride, 1) : 1;
+    int32_t pace = p->method == TYN_METHOD_EPIPOLAR && !tyni_slice_bordered(&p->slices) ? tyni_maxi(p->slices.stride, 1) : 1;
     for (int32_t i = tyni_sample_next(r->rejected, 0, r->count - 1); i < r->count;
          i = tyni_sample_next(r->rejected, i + 1, r->count - 1)) {
         float light[3];
@@ -186,7 +185,7 @@ static void correct(const tyni_pass *p, const run *r)
             r->light[c][i] += light[c];
         count++;
     }
-    if (p->grid.rows)
+    if (tyni_pass_gridded(p))
         r->stats->corrected += count;
     else if (p->method == TYN_METHOD_MARCH)
         r->stats->rays += count;
@@ -261,10 +260,10 @@ static void draw_run(const tyni_pass *p, run *r, float *const plane[2], float *s
     share[2] = plane[1];
     if (p->last)
         finish(p, r, r->value, share);
-    if (p->frame->debug && p->frame->target.pixels)
+    if (TYNI_HAS(TYN_PART_DEBUG) && p->frame->debug && p->frame->target.pixels)
         draw_debug(p, r, r->value);
     time[3] = tyni_pass_now(p);
-    *(p->grid.rows ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += time[1] - time[0];
+    *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += time[1] - time[0];
     r->stats->correct_ns += time[2] - time[1];
     r->stats->composite_ns += time[3] - time[2];
 }

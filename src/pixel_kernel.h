@@ -90,7 +90,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r,
     const float py = (float)r->y + 0.5f, dy = py * g->ew - g->ey, inverse = 1.0f / sector->spacing;
     const float slant = (sector->border - py) / dy;
     const int32_t last = sector->count - 2, most = p->lines.pitch - 1;
-    const int sun = p->lamp->kind == TYN_LIGHT_DIRECTIONAL && !tyni_view_bounded(p->lamp);
+    const int sun = tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL && !tyni_view_bounded(p->lamp);
     const int32_t beside = sun ? BESIDE : 0;
     int32_t shift = 0;
     if (sector->count < 2)
@@ -302,10 +302,10 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade_local)(const tyni_pas
         (&p->view, p->lamp->position, v_to_float(v_iadd(v_iset(r->x + i), v_index())) + 0.5f, (float)r->y + 0.5f, &rays);
         all.t0 = t0;
         all.t1 = t1;
-        if (p->method == TYN_METHOD_PREFILTERED)
+        if (tyni_prefilter_kept(p->method))
             all.t1 = v_select(v_mand(v_gt(rays.near_t, t0), v_lt(rays.near_t, t1)), rays.near_t, 0.5f * (t0 + t1));
         TYNI_V(pixel_norm)(m, p->lamp, &rays, &all);
-        if (p->method == TYN_METHOD_PREFILTERED) {
+        if (tyni_prefilter_kept(p->method)) {
             rest.t0 = all.t1;
             rest.t1 = t1;
             TYNI_V(pixel_norm)(m, p->lamp, &rays, &rest);

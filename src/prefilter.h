@@ -9,9 +9,17 @@
 
 #include "base.h"
 
+static inline int tyni_prefilter_kept(tyn_method method)
+{
+    return TYNI_HAS(TYN_PART_PREFILTERED) && method == TYN_METHOD_PREFILTERED;
+}
+static inline int tyni_prefilter_hybrid(tyn_method method)
+{
+    return TYNI_HAS(TYN_PART_PREFILTERED) && method == TYN_METHOD_HYBRID;
+}
 static inline int tyni_prefilter_method(tyn_method method)
 {
-    return method == TYN_METHOD_PREFILTERED || method == TYN_METHOD_HYBRID;
+    return tyni_prefilter_kept(method) || tyni_prefilter_hybrid(method);
 }
 
 /* Sets of rows that a config has room for: coloured light needs one a channel. */

@@ -124,11 +124,11 @@ static int32_t swept_words(crossing *c, const tyni_finder *finder)
 static int32_t find(crossing *c, const tyni_finder *finder)
 {
     int32_t n;
-    if (finder->rays == TYN_RAYS_TREE)
+    if (tyni_ray_way(finder->rays, TYN_RAYS_TREE))
         n = descend(c, finder);
-    else if (finder->rays == TYN_RAYS_COLUMNS)
+    else if (tyni_ray_way(finder->rays, TYN_RAYS_COLUMNS))
         n = each_column(c);
-    else if (finder->rays == TYN_RAYS_SWEEP)
+    else if (tyni_ray_way(finder->rays, TYN_RAYS_SWEEP))
         n = swept_words(c, finder);
     else
         n = TYNI_LANES_CALL(finder->isa, ray_words, (c, finder));
@@ -235,7 +235,7 @@ static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piec
         b->edges[n] = 0;
         if (b->next[n] > b->last[n])
             continue;
-        if (finder->rays == TYN_RAYS_SWEEP)
+        if (tyni_ray_way(finder->rays, TYN_RAYS_SWEEP))
             tyni_sweep_to(finder->sweep, b->sample[n]);
         c.next = b->next[n];
         c.last = b->last[n];

@@ -13,6 +13,12 @@
 
 #include "base.h"
 
+/* Of rays that go this way, where the build has more than one. */
+static inline int tyni_ray_way(tyn_rays rays, tyn_rays way)
+{
+    return TYNI_HAS(TYN_PART_RAYS) && rays == way;
+}
+
 /* A row, and how its lit columns are found. */
 typedef struct tyni_finder {
     const tyni_row *row;

@@ -159,7 +159,7 @@ void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *spli
 {
     /* what no map has covered yet: a local light's columns as two quarters, since half a circle cannot be clipped by lines */
     fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
-    int32_t fans = lamp->kind == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
+    int32_t fans = tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
     float pa = tyni_slice_p(slice, slice->first), pb = tyni_slice_p(slice, slice->last), p[2], u[2], v[2];
     pen w = {isa, threshold, split, room};
     int rising = (0.5f * (pa + pb) < slice->epipole) != lamp->behind; /* p rises towards the lit end */

@@ -133,7 +133,7 @@ void tyni_slice_plane(tyni_slice *s, float border, const tyni_lamp *lamp, const 
     side = tyni_vec_mad(s->a, border, s->b);
     s->origin = tyni_vec(0.0f, 0.0f, 0.0f);
     s->ey = lamp->to_light;
-    if (view->orthographic && lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+    if (view->orthographic && tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL) {
         side = view->forward;
     } else if (view->orthographic) {
         /* columns are angles about the light, from the way back to the camera to the way it looks */
@@ -142,7 +142,8 @@ void tyni_slice_plane(tyni_slice *s, float border, const tyni_lamp *lamp, const 
         side = tyni_vec_sub(side, s->origin);
     }
     s->ex = tyni_vec_normalise(tyni_vec_mad(side, -tyni_vec_dot(side, s->ey), s->ey));
-    if (view->orthographic && lamp->kind == TYN_LIGHT_DIRECTIONAL) { /* rays start at different columns: the least is 0 */
+    /* rays start at different columns: the least is 0 */
+    if (view->orthographic && tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL) {
         float at = tyni_vec_dot(s->b, s->ex) >= 0.0f ? 0.0f : (float)(view->width + view->height);
         s->origin = tyni_vec_mad(s->a, at, s->b);
     }

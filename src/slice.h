@@ -56,6 +56,11 @@ int32_t tyni_slice_points(int32_t pixels, int32_t step);
 /* Shear grid: stride such that `samples` per line suffice for a width x height screen. */
 int32_t tyni_slice_stride(int32_t width, int32_t height, int32_t samples);
 
+static inline int tyni_slice_bordered(const tyni_slices *g)
+{
+    return TYNI_HAS(TYN_PART_GATHERS) && g->layout == TYNI_LAYOUT_BORDER;
+}
+
 /* For every layout: the screen's size and the epipole. */
 void tyni_slice_epipole(tyni_slices *slices, const tyni_lamp *lamp, int32_t width, int32_t height);
 

@@ -149,13 +149,13 @@ tyn_status tyni_slide_lights(const tyn_light *lights, int32_t count, int texture
     for (int32_t i = 0; i < count && status == TYN_OK; i++) {
         const tyn_light *l = &lights[i];
         int coloured = l->texture_count || l->shadow.tint;
-        status = tyni_slide_check(l);
+        status = TYNI_HAS(TYN_PART_SLIDES) ? tyni_slide_check(l) : TYN_OK;
         for (int32_t k = -1; k < l->more_count && status == TYN_OK; k++) {
             const tyn_shadow *s = k < 0 ? &l->shadow : &l->more[k];
             coloured |= s->tint != NULL;
-            status = s->tint ? tyni_check_image(s->tint, TYNI_SLIDE_FORMATS) : TYN_OK;
+            status = TYNI_HAS(TYN_PART_SLIDES) && s->tint ? tyni_check_image(s->tint, TYNI_SLIDE_FORMATS) : TYN_OK;
         }
-        if (status == TYN_OK && coloured && !textured)
+        if (status == TYN_OK && coloured && !(TYNI_HAS(TYN_PART_SLIDES) && textured))
             status = TYN_E_LIMIT;
     }
     return status;

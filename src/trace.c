@@ -14,7 +14,7 @@ void tyni_trace_layout(tyni_pass *p)
 {
     const tyn_config *c = &p->context->config;
     int32_t width = p->view.width, height = p->view.height, samples = p->context->samples;
-    if (c->gather == TYN_GATHER_SHEAR || p->method == TYN_METHOD_PREFILTERED) {
+    if (!TYNI_HAS(TYN_PART_GATHERS) || c->gather == TYN_GATHER_SHEAR || tyni_prefilter_kept(p->method)) {
         tyni_slice_layout(&p->slices, p->lamp, width, height, c->slices, tyni_slice_stride(width, height, samples));
         return;
     }
@@ -102,11 +102,11 @@ static void run_each(const tyni_pass *p, const tyni_slice *slice, const tyni_fin
         float at = tyni_slice_p(slice, j), length, value[3];
         tyni_sight v;
         length = tyni_slice_sight(slice, &p->view, at, &v);
-        if (finder->rays == TYN_RAYS_SWEEP)
+        if (tyni_ray_way(finder->rays, TYN_RAYS_SWEEP))
             tyni_sweep_to(&s->sweep, j);
-        if (finder->rays == TYN_RAYS_STEPS && p->method != TYN_METHOD_HYBRID)
+        if (tyni_ray_way(finder->rays, TYN_RAYS_STEPS) && !tyni_prefilter_hybrid(p->method))
             tyni_pass_walk(p, &v, s->depth[j] * length, value);
-        else if (p->method != TYN_METHOD_HYBRID || !shelf_value(p, s->shelf, &v, s->depth[j] * length, at, value))
+        else if (!tyni_prefilter_hybrid(p->method) || !shelf_value(p, s->shelf, &v, s->depth[j] * length, at, value))
             row_value(p, finder, &v, s->depth[j] * length, at, s->stats, value);
         s->stats->rays++;
         s->value[0][j] = value[0];
@@ -164,8 +164,9 @@ static void run_bundles(const tyni_pass *p, const tyni_slice *slice, const tyni_
 static void run_rays(const tyni_pass *p, const tyni_slice *slice, const tyni_finder *finder, const uint32_t *rays,
                      tyni_scratch *s)
 {
-    int plain = p->lamp->kind == TYN_LIGHT_DIRECTIONAL && !p->lamp->coloured && p->lamp->lift == 0.0f && p->count < 3;
-    if (plain && finder->rays != TYN_RAYS_STEPS && p->method != TYN_METHOD_HYBRID)
+    int plain = tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL && !tyni_view_coloured(p->lamp) && p->lamp->lift == 0.0f &&
+                p->count < 3;
+    if (plain && !tyni_ray_way(finder->rays, TYN_RAYS_STEPS) && !tyni_prefilter_hybrid(p->method))
         run_bundles(p, slice, finder, rays, s);
     else
         run_each(p, slice, finder, rays, s);
@@ -181,16 +182,16 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     finder->blocks = &s->blocks;
     finder->tree = tree;
     finder->sweep = &s->sweep;
-    if (config->rays == TYN_RAYS_STEPS && !tyni_prefilter_method(p->method))
+    if (tyni_ray_way(config->rays, TYN_RAYS_STEPS) && !tyni_prefilter_method(p->method))
         return;
     tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,
                    p->lamp, &p->view, reach_of(p, slice, s->depth));
     s->stats->columns += s->row->columns;
     if (config->rays == TYN_RAYS_WORDS)
         tyni_row_bound(&s->blocks, config->isa, s->row);
-    if (config->rays == TYN_RAYS_TREE)
+    if (tyni_ray_way(config->rays, TYN_RAYS_TREE))
         tyni_tree_build(tree, s->nodes, s->row);
-    if (config->rays == TYN_RAYS_SWEEP)
+    if (tyni_ray_way(config->rays, TYN_RAYS_SWEEP))
         tyni_sweep_begin(&s->sweep, s->row, slice);
 }
 
@@ -218,7 +219,7 @@ static int32_t sample_line(const tyni_pass *p, tyni_slice *slice, int32_t index,
 
 int tyni_trace_row(const tyni_pass *p, int32_t index, tyni_slice *slice, tyni_scratch *s, tyni_finder *finder, tyni_tree *tree)
 {
-    if (p->context->config.rays == TYN_RAYS_STEPS || !sample_line(p, slice, index, s))
+    if (tyni_ray_way(p->context->config.rays, TYN_RAYS_STEPS) || !sample_line(p, slice, index, s))
         return 0;
     build_row(p, slice, s, finder, tree);
     return 1;
@@ -274,7 +275,7 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     s.stats->slices++;
     s.stats->initial += initial;
     build_row(p, &slice, &s, &finder, &tree);
-    if (p->method == TYN_METHOD_HYBRID)
+    if (tyni_prefilter_hybrid(p->method))
         tyni_prefilter_slice(&p->fourier, s.shelf, s.mill, s.row, &slice, &p->view, s.depth);
     time[2] = tyni_pass_now(p);
     if (tyni_debug_marks(p->frame->debug))

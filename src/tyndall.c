@@ -87,12 +87,13 @@ static tyn_status check_optional(const tyn_image *image, uint32_t formats, const
 
 static tyn_status check_debug(const tyn_config *c, const tyn_frame *f)
 {
-    if ((uint32_t)f->debug > (uint32_t)TYN_DEBUG_BASIS || !tyni_finite(f->debug_x) || !tyni_finite(f->debug_y))
+    if ((uint32_t)f->debug > (uint32_t)(TYNI_HAS(TYN_PART_DEBUG) ? TYN_DEBUG_BASIS : TYN_DEBUG_NONE) ||
+        !tyni_finite(f->debug_x) || !tyni_finite(f->debug_y))
         return TYN_E_DISPLAY;
-    if (c->method == TYN_METHOD_PREFILTERED ? tyni_debug_marks(f->debug) || f->debug == TYN_DEBUG_SCATTER
-                                            : f->debug == TYN_DEBUG_BASIS)
+    if (tyni_prefilter_kept(c->method) ? tyni_debug_marks(f->debug) || f->debug == TYN_DEBUG_SCATTER
+                                       : f->debug == TYN_DEBUG_BASIS)
         return TYN_E_DISPLAY;
-    return f->debug == TYN_DEBUG_TREE && c->rays != TYN_RAYS_TREE ? TYN_E_DISPLAY : TYN_OK;
+    return f->debug == TYN_DEBUG_TREE && !tyni_ray_way(c->rays, TYN_RAYS_TREE) ? TYN_E_DISPLAY : TYN_OK;
 }
 
 static tyn_status check_frame(const tyn_context *context, const tyn_frame *f)

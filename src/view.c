@@ -33,10 +33,10 @@ void tyni_view_camera(tyni_view *view, const tyn_camera *camera, int32_t width, 
  * position, wherever it is, as if in front: light always falls away from it on the screen. */
 static void epipole(tyni_lamp *lamp, const tyni_view *view)
 {
-    tyni_vec3 at = view->orthographic && lamp->kind != TYN_LIGHT_DIRECTIONAL ? lamp->position : lamp->to_light;
+    tyni_vec3 at = view->orthographic && tyni_view_kind(lamp) != TYN_LIGHT_DIRECTIONAL ? lamp->position : lamp->to_light;
     float a = tyni_vec_dot(at, view->right), b = tyni_vec_dot(at, view->up), w = tyni_vec_dot(at, view->forward);
     if (view->orthographic)
-        w = lamp->kind == TYN_LIGHT_DIRECTIONAL ? 0.0f : 1.0f;
+        w = tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL ? 0.0f : 1.0f;
     lamp->ex = (a - view->left * w) * view->scale_x;
     lamp->ey = (view->top * w - b) * view->scale_y;
     lamp->ew = w;
@@ -92,25 +92,25 @@ void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *vi
     for (int32_t c = 0; c < 3; c++)
         lamp->colour[c] = light->colour[c];
     lamp->axis = tyni_vec_normalise(tyni_vec_load(light->direction));
-    if (light->kind == TYN_LIGHT_DIRECTIONAL) {
+    if (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL) {
         lamp->to_light = tyni_vec_scale(lamp->axis, -1.0f);
     } else {
         lamp->position = tyni_vec_sub(tyni_vec_load(light->position), view->position);
         lamp->distance = tyni_vec_length(lamp->position);
         lamp->to_light = tyni_vec_normalise(lamp->position);
-        if (light->kind == TYN_LIGHT_SPOT)
+        if (tyni_view_kind(lamp) == TYN_LIGHT_SPOT)
             tyni_num_sincos(0.5f * light->angle, &sine, &lamp->cos_half);
         lamp->radius = tyni_maxf(1e-2f * view->near_depth, 1e-4f * lamp->distance);
         lamp->no_epipole = lamp->distance <= 1e-4f * view->near_depth;
     }
     epipole(lamp, view);
-    lamp->slide_count = tyni_slide_set(lamp->slides, light, origin);
-    lamp->coloured = lamp->slide_count > 0;
+    lamp->slide_count = TYNI_HAS(TYN_PART_SLIDES) ? tyni_slide_set(lamp->slides, light, origin) : 0;
+    lamp->coloured = tyni_view_slides(lamp) > 0;
     shadow_map(lamp, &light->shadow, view);
     for (int32_t i = 0; i < light->more_count; i++)
         shadow_map(lamp, &light->more[i], view);
     lamp->outside = !lamp->map_count || light->outside == TYN_OUTSIDE_LIT ||
-                    (light->outside == TYN_OUTSIDE_DEFAULT && light->kind == TYN_LIGHT_DIRECTIONAL);
+                    (light->outside == TYN_OUTSIDE_DEFAULT && tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL);
 }
 
 /* With T = t - (closest approach) the point is T v - h, h at right angles to v, and the double cone
@@ -177,9 +177,9 @@ static int clip_slide(const tyni_slide *slide, const tyni_sight *v, float *t0, f
 
 int tyni_view_clip(const tyni_lamp *lamp, const tyni_sight *v, float *t0, float *t1)
 {
-    if (lamp->slide_count && lamp->kind != TYN_LIGHT_POINT)
+    if (tyni_view_slides(lamp) && tyni_view_kind(lamp) != TYN_LIGHT_POINT)
         return clip_slide(&lamp->slides[0], v, t0, t1);
-    return lamp->kind == TYN_LIGHT_SPOT ? clip_cone(lamp, v, t0, t1) : *t0 < *t1;
+    return tyni_view_kind(lamp) == TYN_LIGHT_SPOT ? clip_cone(lamp, v, t0, t1) : *t0 < *t1;
 }
 
 static void tint(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3])
@@ -206,7 +206,7 @@ static void tint(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3])
 void tyni_view_colour(const tyni_lamp *lamp, tyni_vec3 p, float rgb[3])
 {
     rgb[0] = rgb[1] = rgb[2] = 1.0f;
-    if (lamp->slide_count)
-        tyni_slide_colour(lamp->slides, lamp->slide_count, p, rgb);
+    if (tyni_view_slides(lamp))
+        tyni_slide_colour(lamp->slides, tyni_view_slides(lamp), p, rgb);
     tint(lamp, p, rgb);
 }

@@ -102,6 +102,20 @@ typedef struct tyni_lamp {
     tyni_map maps[TYN_MAX_MAPS];
 } tyni_lamp;
 
+/* What a build may have left out. */
+static inline tyn_light_kind tyni_view_kind(const tyni_lamp *lamp)
+{
+    return TYNI_HAS(TYN_PART_LAMPS) ? lamp->kind : TYN_LIGHT_DIRECTIONAL;
+}
+static inline int32_t tyni_view_slides(const tyni_lamp *lamp)
+{
+    return TYNI_HAS(TYN_PART_SLIDES) ? lamp->slide_count : 0;
+}
+static inline int tyni_view_coloured(const tyni_lamp *lamp)
+{
+    return TYNI_HAS(TYN_PART_SLIDES) && lamp->coloured;
+}
+
 void tyni_view_lamp(tyni_lamp *lamp, const tyn_light *light, const tyni_view *view);
 
 /* The part t0 .. t1 of a ray inside the volume that the light reaches: a spot's cone, or the frustum or
@@ -111,7 +125,7 @@ int tyni_view_clip(const tyni_lamp *lamp, const tyni_sight *v, float *t0, float 
 /* True if that is not all space. */
 static inline int tyni_view_bounded(const tyni_lamp *lamp)
 {
-    return lamp->kind == TYN_LIGHT_SPOT || (lamp->kind == TYN_LIGHT_DIRECTIONAL && lamp->slide_count);
+    return tyni_view_kind(lamp) == TYN_LIGHT_SPOT || (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL && tyni_view_slides(lamp));
 }
 
 /* Slides and tints at a point relative to the camera. */

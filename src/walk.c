@@ -271,7 +271,7 @@ void tyni_walk_ray(int32_t isa, const tyni_lamp *lamp, const tyni_integral *it, 
 static void inside_frustum(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float t[2], float light[3])
 {
     float from = t[1], to = t[0], part[2];
-    if (lamp->coloured || lamp->lift != 0.0f || (lamp->outside && lamp->kind != TYN_LIGHT_DIRECTIONAL))
+    if (tyni_view_coloured(lamp) || lamp->lift != 0.0f || (lamp->outside && tyni_view_kind(lamp) != TYN_LIGHT_DIRECTIONAL))
         return;
     for (int32_t i = 0; i < lamp->map_count; i++) {
         part[0] = t[0];
@@ -318,7 +318,7 @@ void tyni_walk_steps(int32_t isa, const tyni_lamp *lamp, const tyni_medium *medi
 static TYNI_NOINLINE void colour_in(const tyni_lamp *lamp, const tyni_medium *medium, const tyni_sight *v, float light[3])
 {
     float mix[3] = {1.0f, 1.0f, 1.0f};
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL)
+    if (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL)
         tyni_medium_mix(medium, tyni_clampf(tyni_vec_dot(v->d, lamp->to_light), -1.0f, 1.0f), mix);
     for (int32_t c = 0; c < 3; c++)
         light[c] *= mix[c] * lamp->colour[c];

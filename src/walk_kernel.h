@@ -111,7 +111,7 @@ TYNI_V_INLINE void TYNI_V(walk_density)(const tyni_medium *m, const tyni_lamp *l
 {
     const tyni_vec3 from = tyni_vec_sub(lamp->position, v->o);
     v_float x, y, z, r2, r, cosine;
-    if (lamp->kind == TYN_LIGHT_DIRECTIONAL) {
+    if (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL) {
         for (int32_t c = 0; c < 3; c++)
             density[c] = v_exp(-m->sigma[c] * t);
         return;
@@ -146,7 +146,7 @@ static TYNI_V_TARGET void TYNI_V(walk_steps)(const tyni_lamp *lamp, const tyni_m
         if (v_none(these))
             continue;
         TYNI_V(walk_density)(m, lamp, v, t, density);
-        if (lamp->coloured) {
+        if (tyni_view_coloured(lamp)) {
             float at[v_n], rgb[3][v_n];
             v_store(at, t);
             colours(lamp, v, at, tyni_mini(v_n, s->steps - i), rgb[0], v_n);

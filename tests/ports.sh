@@ -1,7 +1,8 @@
 #!/bin/sh
 # ports.sh - the port to copy, and what ports/README.md says of memory.
 #     sh tests/ports.sh          what `make test` runs
-#     sh tests/ports.sh bare     the bare-metal ports in QEMU: each draws the picture of the native build, to the bit
+#     sh tests/ports.sh bare     the bare-metal ports in QEMU, and the library without its parts: each draws the picture of the native
+#                                build, to the bit
 . tests/shell.sh
 
 work=$B/ports
@@ -59,9 +60,25 @@ bare_port() {
     quiet "$1 builds" "$MAKE" -s B="$B" CFLAGS=-O2 "$B/$1.elf"
 }
 
+# The library without its parts refuses them, and draws the same picture.
+check_lean() {
+    strict='-std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror -ffp-contract=off -Iinclude -Isrc'
+    for mask in 1 2 4 8 16 32; do
+        # shellcheck disable=SC2086
+        quiet "TYN_LEAVE_OUT=$mask compiles" "$CC" $strict -O1 -DTYN_LEAVE_OUT=$mask -fsyntax-only src/*.c src/*/*.c
+    done
+    lean="-O1 -DTYN_PLAIN_C -DTYN_LEAVE_OUT=63"
+    quiet 'lean: builds' "$MAKE" -s B="$work/lean" CC="$CC" CFLAGS="$lean" "$work/lean/null" || return
+    # shellcheck disable=SC2086
+    quiet 'lean: the test builds' "$CC" $strict $lean -o "$work/lean/test" tests/lean/lean.c "$work/lean/libtyndall.a" -lm || return
+    part "$work/lean/test"
+    empty 'lean: the picture is the native one' "$([ "$("$work/lean/null" | grep -m 1 '^picture')" = "$native" ] || echo 'it is not')"
+}
+
 check_bare() {
     quiet 'the native picture' "$MAKE" -s B="$B" CC="$CC" CFLAGS="$CFLAGS" "$B/null" || return
     native=$("$B/null" | grep -m 1 '^picture')
+    check_lean
     for board in m4:mps2-an386 m7:mps2-an500; do
         bare_port arm-m/${board%:*} arm-none-eabi-gcc qemu-system-arm &&
             bare ${board%:*} qemu-system-arm -M ${board#*:} -icount shift=0 -semihosting -nographic -kernel "$B/arm-m/${board%:*}.elf"

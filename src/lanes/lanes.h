@@ -96,7 +96,10 @@
 #define TYNI_LANES_JOIN(a, b, c, d) TYNI_LANES_PASTE(a, b, c, d)
 #define TYNI_V(name) TYNI_LANES_JOIN(tyni_, TYNI_ISA, _, name)
 #define TYNI_V_TARGET TYNI_LANES_JOIN(TYNI_LANES_TARGET_, TYNI_ISA, , )
-#if defined(__GNUC__)
+#if defined(__OPTIMIZE_SIZE__) && !defined(TYNI_LANES_X86) && !defined(TYNI_LANES_NEON) && !defined(TYNI_LANES_WASM)
+/* one lane, and code is to be small: the compiler knows better */
+#define TYNI_V_INLINE static inline TYNI_V_TARGET
+#elif defined(__GNUC__)
 #define TYNI_V_INLINE static inline __attribute__((always_inline)) TYNI_V_TARGET
 #else
 #define TYNI_V_INLINE static inline
