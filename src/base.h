@@ -30,6 +30,15 @@
 #define TYNI_PREFETCH(address) ((void)(address))
 #endif
 
+/* Before a loop of few and known rounds: all of them side by side. Vectors in an array would else go through memory. */
+#if defined(__clang__)
+#define TYNI_UNROLL _Pragma("clang loop unroll(full)")
+#elif defined(__GNUC__)
+#define TYNI_UNROLL _Pragma("GCC unroll 4")
+#else
+#define TYNI_UNROLL
+#endif
+
 /* Of rare work whose stack the caller should not carry. */
 #if defined(__GNUC__)
 #define TYNI_NOINLINE __attribute__((noinline))

@@ -14,4 +14,9 @@ void tyni_composite_read(int32_t isa, const tyn_image *image, int32_t x, int32_t
 void tyni_composite_write(int32_t isa, const tyn_image *image, const tyn_display *display, int32_t x, int32_t y, int32_t count,
                           float *const rgb[3]);
 
+/* share * colour + light, each, into an image that may be the colour itself: tyni_composite_write of what tyni_composite_read
+ * has. */
+void tyni_composite_blend(int32_t isa, const tyn_image *image, const tyn_display *display, const tyn_image *colour, int32_t x,
+                          int32_t y, int32_t count, float *const share[3], float *const light[3]);
+
 #endif

@@ -50,22 +50,33 @@ static int settle(const sum *s, float least, float value[3])
     return 1;
 }
 
-/* tyndall's shear grid: a pixel lies on the samples' own column, between two lines. */
-static int gather_shear(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
+/* A pixel's place on the shear grid: the first of its two lines and how far it is from it; its sample, and pixels beyond it. 0:
+ * no slices at all. */
+static int place_in(const tyni_slices *slices, float x, float y, int32_t *line, float *f, int32_t *sample, int32_t *beyond)
 {
-    sum s = {0.0f, 0.0f, 0.0f, 0.0f};
-    float k, f;
+    float k;
     const tyni_sector *sector = tyni_slice_find(slices, x, y, &k);
-    int32_t line, sample, p, r;
+    int32_t p;
     if (!sector->count)
         return 0;
     /* the last points of a coarse picture lie beside the screen */
     p = tyni_mini((int32_t)(sector->along_y ? y : x), (sector->along_y ? slices->height : slices->width) - 1);
-    sample = p / slices->stride;
-    r = p - sample * slices->stride;
-    line = tyni_mini((int32_t)k, sector->count - 2);
-    f = k - (float)line;
-    line += sector->start;
+    *sample = p / slices->stride;
+    *beyond = p - *sample * slices->stride;
+    *line = tyni_mini((int32_t)k, sector->count - 2);
+    *f = k - (float)*line;
+    *line += sector->start;
+    return 1;
+}
+
+/* tyndall's shear grid: a pixel lies on the samples' own column, between two lines. */
+static int gather_shear(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
+{
+    sum s = {0.0f, 0.0f, 0.0f, 0.0f};
+    float f;
+    int32_t line, sample, r;
+    if (!place_in(slices, x, y, &line, &f, &sample, &r))
+        return 0;
     if (!r) {
         tap(&s, field, line, sample, depth, 1.0f - f);
         tap(&s, field, line + 1, sample, depth, f);
@@ -77,6 +88,28 @@ static int gather_shear(const tyni_field *field, const tyni_slices *slices, floa
         tap(&s, field, line + 1, sample + 1, depth, f * g);
     }
     return settle(&s, TYNI_GATHER_ENOUGH, value);
+}
+
+/* How many samples away. */
+#define BESIDE 4
+
+int tyni_gather_beside(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
+{
+    float f;
+    int32_t line, sample, r;
+    if (!place_in(slices, x, y, &line, &f, &sample, &r))
+        return 0;
+    for (int32_t away = 1; away <= BESIDE; away++) {
+        sum s = {0.0f, 0.0f, 0.0f, 0.0f};
+        for (int32_t way = -away; way <= away; way += 2 * away) {
+            int32_t at = tyni_clampi(sample + way, 0, field->pitch - 1);
+            tap(&s, field, line, at, depth, 1.0f - f);
+            tap(&s, field, line + 1, at, depth, f);
+        }
+        if (settle(&s, TYNI_GATHER_ENOUGH, value))
+            return 1;
+    }
+    return 0;
 }
 
 /* A pixel's place on a line, in samples. */

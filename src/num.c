@@ -43,6 +43,22 @@ float tyni_num_fog(float x)
     return p * x + 1.0f;
 }
 
+void tyni_num_fade(float x, float *left, float *lost)
+{
+    float t = tyni_maxf(x * -1.44269504f, -126.0f), r, scale, p;
+    int32_t i = (int32_t)(t - 0.5f); /* to nearest: t <= 0 */
+    r = t - (float)i;
+    scale = tyni_bits_float((uint32_t)(i + 127) << 23);
+    /* 2^r - 1 for |r| <= 1/2: with i = 0 nothing is lost to a 1 */
+    p = 0.00133813021f;
+    p = p * r + 0.00966636837f;
+    p = p * r + 0.0555038117f;
+    p = p * r + 0.240223497f;
+    p = (p * r + 0.693147182f) * r * scale;
+    *left = p + scale;
+    *lost = (1.0f - scale) - p;
+}
+
 float tyni_num_log(float x)
 {
     uint32_t bits;

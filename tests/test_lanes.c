@@ -1,4 +1,5 @@
 /* test_lanes.c - src/lanes: every operation of every ISA against scalar, bit by bit. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -9,7 +10,7 @@
 #include "test.h"
 
 #define OPS_COUNT 256 /* numbers that an operation gets */
-#define NUMBERS 22    /* operations of lanes_ops.h */
+#define NUMBERS 26    /* operations of lanes_ops.h */
 #define BITS (37 + 3 * 32)
 
 #define TYNI_KERNEL "../tests/lanes_ops.h" /* from src/ */
@@ -97,7 +98,7 @@ static void test_ops(int32_t isa)
 /* Scalar's own rules, which the others then have. */
 static void test_scalar(void)
 {
-    float wave[2];
+    float wave[2], fade[2];
     numbers n;
     TEST("lanes: scalar is what the helpers and num.c are");
     for (int round = 0; round < 100; round++) {
@@ -108,6 +109,11 @@ static void test_scalar(void)
             CHECK(same_number(tyni_scalar_log(x), tyni_num_log(x)) && same_number(tyni_scalar_log(s), tyni_num_log(s)));
             CHECK(same_number(tyni_scalar_fog(tyni_absf(x)), tyni_num_fog(tyni_absf(x))));
             CHECK(same_number(tyni_scalar_fog(tyni_absf(s)), tyni_num_fog(tyni_absf(s))));
+            tyni_num_fade(tyni_absf(s), &fade[0], &fade[1]);
+            CHECK(same_number(tyni_scalar_test_fade(tyni_absf(s), 0), fade[0]));
+            CHECK(same_number(tyni_scalar_test_fade(tyni_absf(s), 1), fade[1]));
+            CHECK_NEAR(fade[0], exp(-fabs((double)s)), (6 + fabs((double)s)) * 1e-7 * exp(-fabs((double)s)) + 2e-38);
+            CHECK_NEAR(fade[1], -expm1(-fabs((double)s)), -8e-7 * expm1(-fabs((double)s)));
             CHECK(same_number(tyni_scalar_atan2(x, y), tyni_num_atan2(x, y)));
             CHECK(same_number(tyni_scalar_atan2(s, r), tyni_num_atan2(s, r)));
             tyni_num_sincos(s, &wave[0], &wave[1]);

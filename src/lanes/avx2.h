@@ -251,6 +251,10 @@ TYNI_AVX2_OP __m256 tyni_avx2_pick(const float *base, __m256i index)
 {
     return _mm256_permutevar8x32_ps(_mm256_loadu_ps(base), index);
 }
+TYNI_AVX2_OP __m256i tyni_avx2_ipick(const void *base, __m256i index)
+{
+    return _mm256_permutevar8x32_epi32(tyni_avx2_iload(base), index);
+}
 /* Both halves of the table, and bit 3 of the index says which. */
 TYNI_AVX2_OP __m256 tyni_avx2_pick16(const float *base, __m256i index)
 {
@@ -261,6 +265,13 @@ TYNI_AVX2_OP __m256 tyni_avx2_pick16(const float *base, __m256i index)
 TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 {
     return _mm256_castsi256_ps(tyni_avx2_igather(base, _mm256_slli_epi32(index, 2)));
+}
+TYNI_AVX2_OP __m256 tyni_avx2_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    const uint8_t *q = p + 4 * step;
+    const __m128 low = _mm_setr_ps(base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]);
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(low),
+                                _mm_setr_ps(base[q[0]], base[q[step]], base[q[2 * step]], base[q[3 * step]]), 1);
 }
 TYNI_AVX2_OP __m256i tyni_avx2_igather_where(const void *base, __m256i bytes, __m256i m)
 {

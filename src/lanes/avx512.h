@@ -249,6 +249,18 @@ TYNI_AVX512_OP __m512i tyni_avx512_igather(const void *base, __m512i bytes)
     high = _mm256_inserti128_si256(high, tyni_avx512_four(base, at + 12), 1);
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
+TYNI_AVX512_OP __m128 tyni_avx512_four_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    return _mm_setr_ps(base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]);
+}
+TYNI_AVX512_OP __m512 tyni_avx512_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    __m256 low = _mm256_castps128_ps256(tyni_avx512_four_bytes(base, p, step)), high;
+    low = _mm256_insertf128_ps(low, tyni_avx512_four_bytes(base, p + 4 * step, step), 1);
+    high = _mm256_castps128_ps256(tyni_avx512_four_bytes(base, p + 8 * step, step));
+    high = _mm256_insertf128_ps(high, tyni_avx512_four_bytes(base, p + 12 * step, step), 1);
+    return _mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1);
+}
 TYNI_AVX512_OP __m512 tyni_avx512_gather(const float *base, __m512i index)
 {
     return _mm512_castsi512_ps(tyni_avx512_igather(base, _mm512_slli_epi32(index, 2)));
@@ -256,6 +268,10 @@ TYNI_AVX512_OP __m512 tyni_avx512_gather(const float *base, __m512i index)
 TYNI_AVX512_OP __m512 tyni_avx512_pick(const float *base, __m512i index)
 {
     return _mm512_permutexvar_ps(index, _mm512_loadu_ps(base));
+}
+TYNI_AVX512_OP __m512i tyni_avx512_ipick(const void *base, __m512i index)
+{
+    return _mm512_permutexvar_epi32(index, _mm512_loadu_si512(base));
 }
 TYNI_AVX512_OP __m512i tyni_avx512_igather_where(const void *base, __m512i bytes, __mmask16 m)
 {

@@ -14,7 +14,7 @@ TYNI_V_INLINE v_mask v_ne(v_float a, v_float b)
 }
 TYNI_V_INLINE v_float v_abs(v_float x)
 {
-    return v_select(v_lt(x, v_set(0.0f)), -x, x);
+    return v_max(-x, x);
 }
 TYNI_V_INLINE v_float v_clamp(v_float x, v_float low, v_float high)
 {
@@ -57,15 +57,6 @@ TYNI_V_INLINE v_int v_load_u8_n(const uint8_t *p, int32_t n)
     for (int32_t i = 0; i < n; i++)
         part[i] = p[i];
     return v_load_u8(part);
-}
-TYNI_V_INLINE v_int v_load_u16_n(const uint16_t *p, int32_t n)
-{
-    uint16_t part[v_n] = {0};
-    if (n >= v_n)
-        return v_load_u16(p);
-    for (int32_t i = 0; i < n; i++)
-        part[i] = p[i];
-    return v_load_u16(part);
 }
 TYNI_V_INLINE void v_store_u8_n(uint8_t *p, v_int x, int32_t n)
 {
@@ -114,16 +105,6 @@ TYNI_V_INLINE v_int TYNI_V(rgba)(v_int r, v_int g, v_int b, v_int a)
     if (first)
         return v_ior(v_ior(r, v_shl(g, 8)), v_ior(v_shl(b, 16), v_shl(a, 24)));
     return v_ior(v_ior(a, v_shl(b, 8)), v_ior(v_shl(g, 16), v_shl(r, 24)));
-}
-/* Bytes of the first n pixels: out[k] has byte k of each. */
-TYNI_V_INLINE void v_load_rgba8_n(const uint8_t *p, v_int out[4], int32_t n)
-{
-    const v_int all = v_iload_n(p, n), low = v_iset(255);
-    const uint32_t one = 1;
-    uint8_t first;
-    memcpy(&first, &one, 1);
-    for (int32_t k = 0; k < 4; k++)
-        out[k] = v_iand(v_shr(all, 8 * (first ? k : 3 - k)), low);
 }
 TYNI_V_INLINE void v_store_rgba8(uint8_t *p, v_int r, v_int g, v_int b, v_int a)
 {
@@ -210,6 +191,20 @@ TYNI_V_INLINE v_float v_fog(v_float x)
     if (v_all(small))
         return p;
     return v_select(small, p, (1.0f - v_exp(-x)) / x);
+}
+
+TYNI_V_INLINE void v_fade(v_float x, v_float *left, v_float *lost)
+{
+    const v_float t = v_max(x * -1.44269504f, v_set(-126.0f));
+    const v_int i = v_trunc(t - 0.5f);
+    const v_float r = t - v_to_float(i), scale = v_from_bits(v_shl(v_iadd(i, v_iset(127)), 23));
+    v_float p = v_set(0.00133813021f);
+    p = p * r + 0.00966636837f;
+    p = p * r + 0.0555038117f;
+    p = p * r + 0.240223497f;
+    p = (p * r + 0.693147182f) * r * scale;
+    *left = p + scale;
+    *lost = (1.0f - scale) - p;
 }
 
 TYNI_V_INLINE v_float v_log(v_float x)

@@ -26,6 +26,7 @@
  *     v_lt v_le v_gt v_ge v_eq v_ne      masks; NaN: all false but v_ne
  *     v_select(m, a, b)                  m ? a : b
  *     v_exp(x) v_fog(x) v_log(x)         the bits of tyni_num_exp, tyni_num_fog, tyni_num_log
+ *     v_fade(x, &left, &lost)            the bits of tyni_num_fade
  *     v_sincos(x, &s, &c) v_atan2(y, x)  the bits of tyni_num_sincos, tyni_num_atan2
  * Integers, wrapping:
  *     v_iadd v_isub v_imul v_imin v_imax v_iand v_ior v_ixor v_iandnot(a, b) = a & ~b
@@ -47,13 +48,14 @@
  *     ..._n(p, n), ..._n(p, x, n)        the first n lanes alone, any n: others load as 0, their memory is not touched
  *     v_store_where v_istore_where(p, m, x)    where m; elsewhere the old values may be written back: all must be writable
  *     v_gather(base, index)              floats base[index]; all lanes are read
+ *     v_gather_bytes(base, p, step)      floats base[p[0]], base[p[step]] ...: what bytes stand for
  *     v_pick(base, index)                floats base[index], 0 <= index < v_n; all of base[0 .. v_n - 1] may be read
+ *     v_ipick(base, index)               32-bit words, likewise
  *     v_pick16(base, index)              the same of a table of 16, 0 <= index < 16
  *     v_igather(base, bytes)             32-bit words at base + bytes, at any address
  *     v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything
  *     v_store_rgb(p, r, g, b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b)
  *     v_store_rgba8(p, r, g, b, a)       4 v_n bytes out of the low 8 bits of v_ints; v_store_rgba8_n(p, r, g, b, a, n)
- *     v_load_rgba8_n(p, out[4], n)       and the way back: four v_ints
  *     v_above16(t, position)             32 bits from 32 uint16_t: bit i is position < t[i]; position is 0 .. 65535
  * Over lanes:
  *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
@@ -158,7 +160,9 @@
 #define v_store_u8 TYNI_V(store_u8)
 #define v_store_u16 TYNI_V(store_u16)
 #define v_gather TYNI_V(gather)
+#define v_gather_bytes TYNI_V(gather_bytes)
 #define v_pick TYNI_V(pick)
+#define v_ipick TYNI_V(ipick)
 #define v_pick16 TYNI_V(pick16)
 #define v_igather TYNI_V(igather)
 #define v_igather_where TYNI_V(igather_where)
@@ -178,11 +182,9 @@
 #define v_all TYNI_V(all)
 #define v_none TYNI_V(none)
 #define v_load_u8_n TYNI_V(load_u8_n)
-#define v_load_u16_n TYNI_V(load_u16_n)
 #define v_store_u8_n TYNI_V(store_u8_n)
 #define v_store_u16_n TYNI_V(store_u16_n)
 #define v_store_rgb_n TYNI_V(store_rgb_n)
-#define v_load_rgba8_n TYNI_V(load_rgba8_n)
 #define v_store_rgba8 TYNI_V(store_rgba8)
 #define v_store_rgba8_n TYNI_V(store_rgba8_n)
 #define v_sum16 TYNI_V(sum16)
@@ -191,6 +193,7 @@
 #define v_isum TYNI_V(isum)
 #define v_exp TYNI_V(exp)
 #define v_fog TYNI_V(fog)
+#define v_fade TYNI_V(fade)
 #define v_log TYNI_V(log)
 #define v_sincos TYNI_V(sincos)
 #define v_atan2 TYNI_V(atan2)

@@ -258,6 +258,11 @@ TYNI_NEON_OP float32x4_t tyni_neon_gather(const float *base, int32x4_t index)
         x[i] = base[at[i]];
     return vld1q_f32(x);
 }
+TYNI_NEON_OP float32x4_t tyni_neon_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    const float x[4] = {base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]};
+    return tyni_neon_load(x);
+}
 TYNI_NEON_OP float32x4_t tyni_neon_pick(const float *base, int32x4_t index)
 {
     return tyni_neon_gather(base, index);
@@ -265,6 +270,10 @@ TYNI_NEON_OP float32x4_t tyni_neon_pick(const float *base, int32x4_t index)
 TYNI_NEON_OP float32x4_t tyni_neon_pick16(const float *base, int32x4_t index)
 {
     return tyni_neon_gather(base, index);
+}
+TYNI_NEON_OP int32x4_t tyni_neon_ipick(const void *base, int32x4_t index)
+{
+    return tyni_neon_igather(base, tyni_neon_shl(index, 2));
 }
 TYNI_NEON_OP int32x4_t tyni_neon_igather_where(const void *base, int32x4_t bytes, uint32x4_t m)
 {

@@ -232,6 +232,11 @@ TYNI_SCALAR_OP float tyni_scalar_gather(const float *base, int32_t index)
 {
     return base[index];
 }
+TYNI_SCALAR_OP float tyni_scalar_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    (void)step;
+    return base[*p];
+}
 TYNI_SCALAR_OP float tyni_scalar_pick(const float *base, int32_t index)
 {
     return tyni_scalar_gather(base, index);
@@ -243,6 +248,10 @@ TYNI_SCALAR_OP float tyni_scalar_pick16(const float *base, int32_t index)
 TYNI_SCALAR_OP int32_t tyni_scalar_igather(const void *base, int32_t bytes)
 {
     return tyni_scalar_iload((const uint8_t *)base + bytes);
+}
+TYNI_SCALAR_OP int32_t tyni_scalar_ipick(const void *base, int32_t index)
+{
+    return tyni_scalar_igather(base, 4 * index);
 }
 TYNI_SCALAR_OP int32_t tyni_scalar_igather_where(const void *base, int32_t bytes, uint32_t m)
 {

@@ -261,6 +261,10 @@ TYNI_SSE2_OP __m128 tyni_sse2_gather(const float *base, __m128i index)
     tyni_sse2_istore(at, index);
     return _mm_setr_ps(base[at[0]], base[at[1]], base[at[2]], base[at[3]]);
 }
+TYNI_SSE2_OP __m128 tyni_sse2_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    return _mm_setr_ps(base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]);
+}
 TYNI_SSE2_OP __m128 tyni_sse2_pick(const float *base, __m128i index)
 {
     return tyni_sse2_gather(base, index);
@@ -268,6 +272,10 @@ TYNI_SSE2_OP __m128 tyni_sse2_pick(const float *base, __m128i index)
 TYNI_SSE2_OP __m128 tyni_sse2_pick16(const float *base, __m128i index)
 {
     return tyni_sse2_gather(base, index);
+}
+TYNI_SSE2_OP __m128i tyni_sse2_ipick(const void *base, __m128i index)
+{
+    return tyni_sse2_igather(base, tyni_sse2_shl(index, 2));
 }
 TYNI_SSE2_OP __m128i tyni_sse2_igather_where(const void *base, __m128i bytes, __m128i m)
 {

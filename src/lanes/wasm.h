@@ -251,6 +251,11 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather(const float *base, v128_t index)
         x[i] = base[at[i]];
     return tyni_wasm_load(x);
 }
+TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+{
+    const float x[4] = {base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]};
+    return tyni_wasm_load(x);
+}
 TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick(const float *base, v128_t index)
 {
     return tyni_wasm_gather(base, index);
@@ -258,6 +263,10 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick(const float *base, v128_t index)
 TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick16(const float *base, v128_t index)
 {
     return tyni_wasm_gather(base, index);
+}
+TYNI_WASM_OP v128_t tyni_wasm_ipick(const void *base, v128_t index)
+{
+    return tyni_wasm_igather(base, tyni_wasm_shl(index, 2));
 }
 TYNI_WASM_OP v128_t tyni_wasm_igather_where(const void *base, v128_t bytes, v128_t m)
 {
