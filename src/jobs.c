@@ -24,11 +24,30 @@ static void counted(void *argument, int32_t index, int32_t worker)
     }
 }
 
+/* The sums of 0 .. n - 1 and of their squares, wrapped. In closed form: of a loop some compilers make one by themselves, with a
+ * product of 128 bits out of their own library. */
+static void sums_of(uint32_t n, uint64_t *sum, uint64_t *squares)
+{
+    uint32_t a = n, b = n - 1, c = 2 * n - 1; /* n = 0: a makes it 0 */
+    if (a % 2 == 0)
+        a /= 2;
+    else
+        b /= 2;
+    *sum = (uint64_t)a * b;
+    if (a % 3 == 0)
+        a /= 3;
+    else if (b % 3 == 0)
+        b /= 3;
+    else
+        c /= 3;
+    *squares = (uint64_t)a * b * c;
+}
+
 tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int32_t count)
 {
     call c = {jobs, job, argument, count};
     int32_t done = 0;
-    uint64_t sum = 0, squares = 0, i = 0;
+    uint64_t sum, squares;
     for (int32_t w = 0; w < jobs->workers && jobs->counts; w++)
         memset(&jobs->counts[w], 0, sizeof jobs->counts[w]);
     if (jobs->executor) {
@@ -40,14 +59,11 @@ tyn_status tyni_jobs_run(const tyni_jobs *jobs, tyn_job job, void *argument, int
     }
     if (!jobs->counts)
         return TYN_OK;
+    sums_of((uint32_t)tyni_maxi(count, 0), &sum, &squares);
     for (int32_t w = 0; w < jobs->workers; w++) {
         done += jobs->counts[w].done;
-        sum += jobs->counts[w].sum;
-        squares += jobs->counts[w].squares;
-    }
-    for (; i < (uint64_t)tyni_maxi(count, 0); i++) {
-        sum -= i;
-        squares -= i * i;
+        sum -= jobs->counts[w].sum;
+        squares -= jobs->counts[w].squares;
     }
     return done == count && !sum && !squares ? TYN_OK : TYN_E_EXECUTOR;
 }
