@@ -157,6 +157,7 @@ help:
 	@echo 'make size       text, data, bss and stack of the library and its parts'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
 	@echo 'make single     the library as two files, build/single/tyndall.[ch]'
+	@echo 'make wasm       the page build/wasm/index.html, with clang and lld'
 	@echo 'make install    to PREFIX=/usr/local, below DESTDIR; make uninstall takes it away again'
 	@echo 'make format     clang-format on every file; make clean'
 	@echo 'CC, CFLAGS and B (the build folder) can be given: make CC=clang CFLAGS=-O3 B=build/clang'

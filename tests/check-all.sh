@@ -1,7 +1,8 @@
 #!/bin/sh
 # check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; a fresh clone as the
-# README has it; and renders of the shared data. About a quarter of an hour on 2 cores. What a machine lacks is SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions ports clone shared
+# README has it; renders of the shared data; the ports and the page. About twenty minutes on 2 cores. What a machine lacks is
+# SKIPPED.
+#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions ports clone shared wasm
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -263,7 +264,11 @@ check_shared() {
     if [ -d "$shared/data" ]; then check_models; else skip "no $shared/data"; fi
 }
 
-for check in format compilers sanitizers valgrind instructions ports clone shared; do
+check_wasm() {
+    part env B="$B/main" MAKE="$MAKE" sh tests/wasm.sh
+}
+
+for check in format compilers sanitizers valgrind instructions ports clone shared wasm; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)
