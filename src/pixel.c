@@ -78,6 +78,8 @@ typedef struct tile {
 
 #define TYNI_KERNEL "pixel_kernel.h"
 #include "lanes/each.h"
+#define TYNI_KERNEL "shade_kernel.h"
+#include "lanes/each.h"
 
 /* TYN_METHOD_PREFILTERED: pixels first .. end - 1 from the rows of the slices beside each. */
 static void unwarp_rows(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first, int32_t end)
