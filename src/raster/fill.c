@@ -199,8 +199,8 @@ static int fill_triangle(brush *b, const tyni_raster_point *top, const tyni_rast
 {
     edge longer, shorter;
     int32_t y, turn, last;
-    int64_t side;
-    int covered = 0;
+    int64_t right, left;
+    int covered = 0, longer_left;
     order(&top, &middle);
     order(&middle, &bottom);
     order(&top, &middle);
@@ -209,19 +209,22 @@ static int fill_triangle(brush *b, const tyni_raster_point *top, const tyni_rast
     if (y >= last)
         return 0;
     turn = tyni_clampi(first_row(middle->y), y, last);
-    side = (int64_t)(middle->x - top->x) * (bottom->y - top->y) - (int64_t)(bottom->x - top->x) * (middle->y - top->y);
-    if (side == 0)
+    /* Compared, not subtracted: clang 14 turns the sign of such a difference on 32-bit MIPS (msub). */
+    right = (int64_t)(middle->x - top->x) * (bottom->y - top->y);
+    left = (int64_t)(bottom->x - top->x) * (middle->y - top->y);
+    if (right == left)
         return 0;
+    longer_left = right > left;
     start(&longer, top, bottom, y, last - y > 1);
     if (y < turn) {
         start(&shorter, top, middle, y, turn - y > 1);
-        covered = side > 0 ? fill_rows(b, &longer, &shorter, y, turn) : fill_rows(b, &shorter, &longer, y, turn);
+        covered = longer_left ? fill_rows(b, &longer, &shorter, y, turn) : fill_rows(b, &shorter, &longer, y, turn);
         if (covered && b->probe)
             return 1;
     }
     if (turn < last) {
         start(&shorter, middle, bottom, turn, last - turn > 1);
-        covered |= side > 0 ? fill_rows(b, &longer, &shorter, turn, last) : fill_rows(b, &shorter, &longer, turn, last);
+        covered |= longer_left ? fill_rows(b, &longer, &shorter, turn, last) : fill_rows(b, &shorter, &longer, turn, last);
     }
     return covered;
 }
