@@ -146,6 +146,10 @@ static tyni_pair3 exactly(const float *a)
     return p;
 }
 
+/* clang 14 packs what follows into WebAssembly vectors and gets another plane; 16 does not. */
+#if defined(__wasm_simd128__) && __clang_major__ < 16
+#pragma clang optimize off
+#endif
 /* A camera's plane from world positions: 1 / w = normal . ray / distance. Rotated corners are off by their distance's last
  * place, which moves a floor of kilometres under an eye at 2 m by 1e-4 of its depth. Here nothing is rounded to single
  * precision before the end. */
@@ -177,6 +181,10 @@ static void set_exact_plane(const tyni_raster_view *view, const float *const p[3
     inverse = unit / distance.high;
     set_values(plane, value.high * inverse, view->step[0] * x.high * inverse, view->step[1] * y.high * inverse);
 }
+
+#if defined(__wasm_simd128__) && __clang_major__ < 16
+#pragma clang optimize on
+#endif
 
 /* To the nearest point of the grid. Clipping leaves |offset| <= GUARD but for rounding, so the clamp only guards the cast. */
 static int32_t snap(float offset, float half)
