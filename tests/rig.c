@@ -326,6 +326,18 @@ double rig_l1(const float *a, const float *b, size_t count)
     return sum > 0 ? gap / sum : gap;
 }
 
+/* No fmax: gcc 12 breaks down over two of them in a loop, on AArch64. */
+double rig_worst(const float *a, const float *b, size_t count)
+{
+    double worst = 0, most = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double gap = fabs((double)a[i] - (double)b[i]);
+        worst = gap <= worst || worst != worst ? worst : gap; /* NaN stays */
+        most = (double)b[i] > most ? (double)b[i] : most;
+    }
+    return worst / most;
+}
+
 double rig_psnr(const uint8_t *a, const uint8_t *b, size_t pixels)
 {
     double sum = 0;
@@ -335,12 +347,29 @@ double rig_psnr(const uint8_t *a, const uint8_t *b, size_t pixels)
     return sum > 0 ? 10 * log10(255.0 * 255.0 * 3.0 * (double)pixels / sum) : 99.0;
 }
 
-uint64_t rig_hash(const void *data, size_t size)
+static uint64_t fnv(uint64_t hash, const uint8_t *bytes, size_t size)
 {
-    const uint8_t *bytes = data;
-    uint64_t hash = 0xcbf29ce484222325u;
     for (size_t i = 0; i < size; i++)
         hash = (hash ^ bytes[i]) * 0x100000001b3u;
+    return hash;
+}
+
+uint64_t rig_hash(const void *data, size_t size)
+{
+    return fnv(0xcbf29ce484222325u, data, size);
+}
+
+uint64_t rig_hash_floats(const float *x, size_t count)
+{
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits;
+        uint8_t bytes[4];
+        memcpy(&bits, x + i, sizeof bits);
+        for (int k = 0; k < 4; k++)
+            bytes[k] = (uint8_t)(bits >> (8 * k) & 255u);
+        hash = fnv(hash, bytes, sizeof bytes);
+    }
     return hash;
 }
 

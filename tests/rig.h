@@ -61,12 +61,14 @@ tyn_status rig_render(rig *r, const tyn_config *config, const tyn_frame *frame);
 /* A block aligned to TYN_ALIGNMENT, for free(). */
 void *rig_block(size_t bytes);
 
-/* Relative L1 of a to b, and PSNR of 8-bit pictures (alpha left out). */
+/* Relative L1 of a to b; their largest difference in parts of b's largest number; PSNR of 8-bit pictures (alpha left out). */
 double rig_l1(const float *a, const float *b, size_t count);
+double rig_worst(const float *a, const float *b, size_t count);
 double rig_psnr(const uint8_t *a, const uint8_t *b, size_t pixels);
 
-/* FNV-1a, 64 bits. */
+/* FNV-1a, 64 bits. Of floats, their bytes from the lowest up, whatever the machine's order. */
 uint64_t rig_hash(const void *data, size_t size);
+uint64_t rig_hash_floats(const float *x, size_t count);
 
 /* The largest number of a depth format. */
 double rig_levels(tyn_format format);

@@ -50,9 +50,9 @@ static rig *render(int i, golden *out)
     frame.display.dither = pictures[i].dither;
     CHECK(rig_render(r, &config, &frame) == TYN_OK);
     out->target = rig_hash(r->target, 4 * PIXELS);
-    out->scatter = rig_hash(scatter, sizeof *scatter * 3 * PIXELS);
-    out->raster = rig_hash(r->colour, sizeof *r->colour * 3 * PIXELS) ^ 3 * rig_hash(r->depth, sizeof *r->depth * PIXELS) ^
-                  5 * rig_hash(r->map[0], sizeof(float) * 256 * 256);
+    out->scatter = rig_hash_floats(scatter, 3 * PIXELS);
+    out->raster = rig_hash_floats(r->colour, 3 * PIXELS) ^ 3 * rig_hash_floats(r->depth, PIXELS) ^
+                  5 * rig_hash_floats(r->map[0], 256 * 256);
     free(scatter);
     return r;
 }
