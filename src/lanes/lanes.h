@@ -12,8 +12,8 @@
  * and one that is only used in the kernel `TYNI_V_INLINE v_float TYNI_V(raster_part)(v_float x)`. No function without one of
  * the two may take or give v_ types. No compiler flags are needed.
  *
- * Every ISA gives the same bits; only which NaN a NaN is is open. So nothing here is fused or approximate, and a float
- * sum over lanes has a fixed order (v_sum16). A kernel must not let a result depend on v_n.
+ * Every ISA gives the same bits; only which NaN a NaN is is open, and what becomes of a signalling one. So nothing here is
+ * fused or approximate, and a float sum over lanes has a fixed order (v_sum16). A kernel must not let a result depend on v_n.
  *
  * Types: v_float, v_int (int32_t; also 32 bits of anything), v_mask. v_n lanes, 1 .. 16.
  *     + - * / and unary minus work on v_float, also with a float on one side. On v_int and v_mask they do not: see below.
