@@ -2,6 +2,7 @@
 #ifndef TYNI_BASE_H
 #define TYNI_BASE_H
 
+#include <float.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -14,6 +15,13 @@
 #pragma STDC FP_CONTRACT OFF
 #elif defined(__GNUC__) && !defined(__STRICT_ANSI__)
 #pragma GCC optimize("fp-contract=off")
+#endif
+
+/* x87 registers round later than float, and no pragma helps. 16: only half floats are widened. */
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
+#error "tyndall: floats are calculated in wider registers, which gives other pictures; 32-bit x86: -msse2 -mfpmath=sse"
+#elif defined(__FAST_MATH__)
+#error "tyndall: -ffast-math gives other pictures and has no NaN; build tyndall without it"
 #endif
 
 /* A broken rule inside the library, never bad input: that is checked at the door and gets a status. */

@@ -7,7 +7,7 @@
 # All that libtyndall.a may ask of the outside.
 symbols='memcmp memcpy memmove memset sqrtf floorf ceilf'
 # All that src/ may include in angle brackets; intrinsics only in lanes/.
-system_headers='stddef.h stdint.h string.h math.h'
+system_headers='float.h stddef.h stdint.h string.h math.h'
 intrinsics='emmintrin.h immintrin.h arm_neon.h wasm_simd128.h'
 # The rooms in the order in which data flows: each may include those before it.
 order='base num vec arena check lanes config door jobs slide view art fit helpers cascade rectify medium raster slice border course row tree sweep sample line
