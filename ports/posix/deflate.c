@@ -86,9 +86,11 @@ static int distance_code(int distance)
 
 /* ---- Huffman codes ---------------------------------------------------------------------------------------------------- */
 
+/* Both of one width: gcc 12 for AArch64 walks bytes and words by one counter in assign(), and then takes it for a function that
+ * writes nothing. */
 typedef struct code {
-    uint8_t length[LITERALS + 2]; /* 0: unused */
-    uint16_t bits[LITERALS + 2];  /* reversed, as they are written */
+    uint16_t length[LITERALS + 2]; /* 0: unused */
+    uint16_t bits[LITERALS + 2];   /* reversed, as they are written */
 } code;
 
 /* The deepest leaf of the Huffman tree over `use`; lengths go to c. */
@@ -130,7 +132,7 @@ static int tree_lengths(const uint32_t *use, int count, code *c)
         int depth = 0;
         for (int n = leaves[i]; n != nodes - 1; n = parent[n])
             depth++;
-        c->length[leaves[i]] = (uint8_t)depth;
+        c->length[leaves[i]] = (uint16_t)depth;
         deepest = depth > deepest ? depth : deepest;
     }
     return deepest;
@@ -205,15 +207,15 @@ static void add_run(runs *r, int symbol, int extra)
 
 static void make_runs(const code *literals, const code *distances, runs *r)
 {
-    uint8_t all[LITERALS + DISTANCES];
+    uint16_t all[LITERALS + DISTANCES];
     int total;
     memset(r, 0, sizeof *r);
     for (r->literals = LITERALS; r->literals > 257 && !literals->length[r->literals - 1];)
         r->literals--;
     for (r->distances = DISTANCES; r->distances > 1 && !distances->length[r->distances - 1];)
         r->distances--;
-    memcpy(all, literals->length, (size_t)r->literals);
-    memcpy(all + r->literals, distances->length, (size_t)r->distances);
+    memcpy(all, literals->length, (size_t)r->literals * sizeof *all);
+    memcpy(all + r->literals, distances->length, (size_t)r->distances * sizeof *all);
     total = r->literals + r->distances;
     for (int i = 0; i < total;) {
         int same = 1;
