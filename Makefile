@@ -14,12 +14,15 @@ DESTDIR ?=
 # No contraction: a fused multiply-add rounds once where others round twice, and the pictures must be the same everywhere.
 WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 FLAGS = -std=c99 $(WARNINGS) -ffp-contract=off -Iinclude -Isrc $(CFLAGS)
-POSIX = -D_POSIX_C_SOURCE=200809L -pthread -Iports/posix
+THREADS = -pthread
+POSIX = -D_POSIX_C_SOURCE=200809L $(THREADS) -Iports/posix
 VERSION := $(shell sed -n 's/^.define TYN_VERSION "\(.*\)"/\1/p' include/tyndall.h)
 
 LIB_SRC := $(wildcard src/*.c src/*/*.c)
 PORT_SRC := $(wildcard ports/posix/*.c)
-TEST_SRC := $(filter-out tests/fuzz_%.c,$(wildcard tests/*.c))
+# The rooms with tests; check-all builds some with fewer.
+ROOMS := $(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c))
+TEST_SRC := $(filter-out tests/fuzz_%.c tests/test_%.c,$(wildcard tests/*.c)) $(ROOMS:%=tests/test_%.c)
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
 C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
@@ -75,24 +78,24 @@ $(B)/libport.a: $(call OBJ,$(PORT_SRC)) $(B)/sources
 	$(AR) qcs $@ $(filter %.o,$^)
 
 $(B)/tyndall: $(call OBJ,$(PORT_SRC)) $(B)/libtyndall.a
-	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
 $(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
-	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
 # One program each.
 $(B)/bench: $(call OBJ,tests/bench/bench.c) $(B)/libport.a $(B)/libtyndall.a
-	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
 $(addprefix $(B)/bench-,frame growth papers): $(B)/bench-%: $(B)/obj/tests/bench/%.o $(B)/libport.a $(B)/libtyndall.a
-	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
 $(B)/bench-raster: tests/bench/raster.c tests/bench/llvmpipe.c tests/bench/raster.h $(B)/libport.a $(B)/libtyndall.a
 	@gl=$$(pkg-config --cflags --libs egl gl 2>/dev/null) && gl="-DBENCH_EGL $$gl"; set -x; \
 	$(CC) $(FLAGS) $(POSIX) -o $@ $(filter %.c,$^) $(filter %.a,$^) $$gl -lm
 
 $(B)/bench-prefiltered: $(call OBJ,tests/bench/prefiltered.c tests/bench/gallery.c) $(B)/libport.a $(B)/libtyndall.a
-	$(CC) $(CFLAGS) -pthread -o $@ $^ -lm
+	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
 $(B)/obj/src/%.o: src/%.c $(B)/flags
 	@mkdir -p $(@D)
@@ -104,7 +107,7 @@ $(B)/obj/%.o: %.c $(B)/flags
 
 # Each tests/test_ROOM.c has a test_ROOM(); tests/main.c runs those listed here.
 $(B)/rooms.h: $(B)/sources
-	printf 'ROOM(%s)\n' $(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c)) >$@
+	printf 'ROOM(%s)\n' $(ROOMS) >$@
 $(B)/obj/tests/main.o: $(B)/rooms.h
 
 # Written only when they change, so that other flags, or a file that came or went, rebuild what they must.
@@ -150,7 +153,7 @@ help:
 	@echo 'make            the library build/libtyndall.a and the tool build/tyndall'
 	@echo 'make run        renders the built-in scenes as PNGs under build/'
 	@echo 'make test       all tests, under a minute'
-	@echo 'make check-all  the tests under other compilers, optimisers and sanitizers, about a quarter of an hour'
+	@echo 'make check-all  the tests under other compilers, optimisers and sanitizers, on other machines too, about 40 minutes'
 	@echo 'make bench      times against a plain pass over the pixels'
 	@echo 'make bench-raster  the rasterizer, every ISA, and against llvmpipe where EGL and GL are installed'
 	@echo 'make bench-prefiltered  tables and pictures of prefiltered rows'

@@ -1,8 +1,8 @@
 #!/bin/sh
 # check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; a fresh clone as the
-# README has it; renders of the shared data; the ports and the page. About twenty minutes on 2 cores. What a machine lacks is
-# SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions ports clone shared wasm
+# README has it; renders of the shared data; the ports and the page; and other machines. About 45 minutes on 2 cores. What a
+# machine lacks is SKIPPED.
+#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions ports clone shared wasm sameness
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -59,11 +59,6 @@ check_compilers() {
     variant O3 gcc '-O3 -march=native'
     variant clang-O3 clang '-O3 -march=native' -accuracy -oracle
     variant plain gcc '-O2 -DTYN_PLAIN_C' golden render workers
-    if can gcc -m32; then
-        variant m32 gcc '-m32 -O2 -msse2 -mfpmath=sse' golden render api
-    else
-        skip 'no 32-bit gcc'
-    fi
 }
 
 check_sanitizers() {
@@ -268,7 +263,11 @@ check_wasm() {
     part env B="$B/main" MAKE="$MAKE" sh tests/wasm.sh
 }
 
-for check in format compilers sanitizers valgrind instructions ports clone shared wasm; do
+check_sameness() {
+    part sh tests/sameness.sh
+}
+
+for check in format compilers sanitizers valgrind instructions ports clone shared wasm sameness; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)
