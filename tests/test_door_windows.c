@@ -25,6 +25,22 @@ static tyn_shadow window(const tyn_shadow *from, int x, int y, int width, int he
     return s;
 }
 
+/* Pixels of which a channel is further off than `close`, in parts of the brightest. */
+static int pixels_apart(const float *a, const float *b, double close)
+{
+    double most = 0;
+    int apart = 0;
+    for (int i = 0; i < 3 * PIXELS; i++)
+        most = (double)b[i] > most ? (double)b[i] : most;
+    for (int i = 0; i < 3 * PIXELS; i += 3) {
+        int off = 0;
+        for (int c = 0; c < 3; c++)
+            off |= fabs((double)a[i + c] - (double)b[i + c]) > close * most;
+        apart += off;
+    }
+    return apart;
+}
+
 static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
 {
     static float one[3 * PIXELS];
@@ -32,8 +48,8 @@ static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
         tyn_config config = rig_way_config(r, &rig_ways[way]);
         tyn_frame frame = rig_frame(r);
         tyn_light light = r->light[0];
-        double most = 0, worst = 0, close;
-        int apart = 0;
+        double close;
+        int apart;
         config.steps = 40;
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
         memcpy(one, r->scatter, sizeof one);
@@ -43,23 +59,15 @@ static void check_windows(rig *r, tyn_shadow *maps, int count, double tolerance)
         light.more_count = count - 1;
         frame.lights = &light;
         CHECK(rig_render(r, &config, &frame) == TYN_OK);
-        for (int i = 0; i < 3 * PIXELS; i++)
-            most = fmax(most, (double)one[i]);
         /* in what order columns come hangs on the pieces: prefiltered sums round in other places */
-        close = most * (config.method >= TYN_METHOD_PREFILTERED ? 2 * tolerance : tolerance);
-        for (int i = 0; i < PIXELS; i++) {
-            double off = 0;
-            for (int c = 0; c < 3; c++)
-                off = fmax(off, fabs((double)one[3 * i + c] - (double)r->scatter[3 * i + c]));
-            worst = fmax(worst, off);
-            apart += off > close;
-        }
+        close = config.method >= TYN_METHOD_PREFILTERED ? 2 * tolerance : tolerance;
+        apart = pixels_apart(r->scatter, one, close);
         /* A pixel in a thousand, of a coarse picture if there is one: a line that runs along a border between texels may be on
          * its other side in a map cut from the other, and ED10's lines are not stretched: at a lamp in view they have many
          * samples to a pixel, and which of these rays cross so few columns that they are walked hangs on how many pieces the
          * columns are in. */
         CHECK(apart <= (config.downscale > 1 ? config.downscale * config.downscale : 1));
-        CHECK_NEAR(worst / most, 0, config.gather == TYN_GATHER_ED10 ? 0.04 : 5 * tolerance);
+        CHECK_NEAR(rig_worst(r->scatter, one, 3 * PIXELS), 0, config.gather == TYN_GATHER_ED10 ? 0.04 : 5 * tolerance);
     }
 }
 
