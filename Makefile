@@ -22,11 +22,12 @@ LIB_SRC := $(wildcard src/*.c src/*/*.c)
 PORT_SRC := $(wildcard ports/posix/*.c)
 # The rooms with tests; check-all builds some with fewer.
 ROOMS := $(patsubst tests/test_%.c,%,$(wildcard tests/test_*.c))
-TEST_SRC := $(filter-out tests/fuzz_%.c tests/test_%.c,$(wildcard tests/*.c)) $(ROOMS:%=tests/test_%.c)
+TEST_SRC := $(filter-out tests/fuzz_main.c tests/test_%.c,$(wildcard tests/*.c)) $(ROOMS:%=tests/test_%.c)
+FUZZ_SRC := $(filter-out tests/fuzz_main.c,$(wildcard tests/fuzz_*.c))
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
 C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-.PHONY: all run test check-all bench bench-raster bench-prefiltered size golden install uninstall single format format-check clean help FORCE
+.PHONY: all run test check-all bench bench-raster bench-prefiltered size golden fuzz install uninstall single format format-check clean help FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -64,6 +65,12 @@ golden: $(B)/tests
 	mkdir -p $(B)/golden
 	TYN_GOLDEN=$(B)/golden $(B)/tests golden
 
+# SECONDS of each of TARGETS (all), by FUZZER (libfuzzer, afl); what it finds is in build/fuzz.
+SECONDS = 60
+FUZZER = libfuzzer
+fuzz:
+	@MAKE="$(MAKE)" B=$(B) sh tests/fuzz.sh $(FUZZER) $(SECONDS) $(TARGETS)
+
 # ---- build ---------------------------------------------------------------------------------------------------------------
 
 # qcs, not rcs: two rooms may have files of the same name.
@@ -82,6 +89,10 @@ $(B)/tyndall: $(call OBJ,$(PORT_SRC)) $(B)/libtyndall.a
 
 $(B)/tests: $(call OBJ,$(TEST_SRC)) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
+
+# By tests/fuzz.sh, with a fuzzer's compiler.
+$(B)/fuzzer: $(call OBJ,tests/fuzz_main.c tests/fuzz.c tests/files.c $(FUZZ_SRC)) $(B)/libport.a $(B)/libtyndall.a
+	$(CC) $(CFLAGS) -fsanitize=fuzzer -pthread -o $@ $^ -lm
 
 # One program each.
 $(B)/bench: $(call OBJ,tests/bench/bench.c) $(B)/libport.a $(B)/libtyndall.a
@@ -109,6 +120,10 @@ $(B)/obj/%.o: %.c $(B)/flags
 $(B)/rooms.h: $(B)/sources
 	printf 'ROOM(%s)\n' $(ROOMS) >$@
 $(B)/obj/tests/main.o: $(B)/rooms.h
+# Each tests/fuzz_TARGET.c has a fuzz_TARGET().
+$(B)/targets.h: $(B)/sources
+	printf 'TARGET(%s)\n' $(patsubst tests/fuzz_%.c,%,$(FUZZ_SRC)) >$@
+$(B)/obj/tests/fuzz_main.o $(B)/obj/tests/test_seeds.o: $(B)/targets.h
 
 # Written only when they change, so that other flags, or a file that came or went, rebuild what they must.
 $(B)/flags: FORCE
@@ -119,7 +134,7 @@ $(B)/sources: FORCE
 # What each port adds.
 include $(wildcard ports/*/port.mk)
 
--include $(patsubst %.o,%.d,$(call OBJ,$(LIB_SRC) $(PORT_SRC) $(TEST_SRC) $(wildcard tests/bench/*.c)))
+-include $(patsubst %.o,%.d,$(call OBJ,$(LIB_SRC) $(PORT_SRC) $(TEST_SRC) tests/fuzz_main.c $(wildcard tests/bench/*.c)))
 
 # ---- deliver -------------------------------------------------------------------------------------------------------------
 
@@ -159,6 +174,7 @@ help:
 	@echo 'make bench-prefiltered  tables and pictures of prefiltered rows'
 	@echo 'make size       text, data, bss and stack of the library and its parts'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
+	@echo 'make fuzz       a minute of each fuzz target; SECONDS=, TARGETS=, FUZZER=afl'
 	@echo 'make single     the library as two files, build/single/tyndall.[ch]'
 	@echo 'make wasm       the page build/wasm/index.html, with clang and lld'
 	@echo 'make install    to PREFIX=/usr/local, below DESTDIR; make uninstall takes it away again'

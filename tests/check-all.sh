@@ -1,8 +1,9 @@
 #!/bin/sh
-# check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; a fresh clone as the
-# README has it; renders of the shared data; the ports and the page; and other machines. About 45 minutes on 2 cores. What a
+# check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; fuzzing; a fresh clone as
+# the README has it; renders of the shared data; the ports and the page; and other machines. About 50 minutes on 2 cores. What a
 # machine lacks is SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind instructions ports clone shared wasm sameness
+#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind fuzz instructions ports clone shared wasm
+#                                          sameness
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -101,6 +102,12 @@ check_valgrind() {
 
 check_instructions() {
     part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/instructions.sh
+}
+
+# Some minutes of what `make fuzz` does for as long as one likes.
+check_fuzz() {
+    part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 30 frame raster fit scene post
+    part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 8 obj mtl ppm pfm
 }
 
 check_ports() {
@@ -267,7 +274,7 @@ check_sameness() {
     part sh tests/sameness.sh
 }
 
-for check in format compilers sanitizers valgrind instructions ports clone shared wasm sameness; do
+for check in format compilers sanitizers valgrind fuzz instructions ports clone shared wasm sameness; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)

@@ -1,58 +1,68 @@
-/* fuzz_scene.c - garbage for the readers of scenes, OBJ, MTL, PPM, PGM and PFM. Built by hand, from the top folder:
- *
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined -D_POSIX_C_SOURCE=200809L -Iinclude -Isrc -Iports/posix -o
- * build/fuzz_scene \ tests/fuzz_scene.c tests/files.c
- * ports/posix/{error,file,text,keys,directives,scene,pnm,mtl,obj,parse,pfm}.c src/[a-z]*.c -lm
- *
- * An input is the files one after the other, with a byte 1 between them. */
+/* fuzz_scene.c - scene files with all that they may name, and the picture of those that are small. */
+#include "fuzz.h"
+
+#include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "files.h"
 #include "parse.h"
-#include "pfm.h"
+#include "render.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+enum { MOST_PIXELS = 40 * 30, MOST_TRIANGLES = 2000 };
 
-static void check(const scene *s)
+static void check_meshes(const scene *s)
 {
     for (int32_t i = 0; i < s->mesh_count; i++) {
         const tyn_mesh *m = &s->meshes[i];
         for (size_t k = 0; k < 3 * (size_t)m->triangles; k++)
-            if (m->indices[k] >= m->vertices)
-                abort();
+            FUZZ_CHECK(m->indices[k] < m->vertices);
         for (size_t k = 0; k < 3 * (size_t)m->vertices; k++)
-            if (!(m->positions[k] - m->positions[k] == 0.0f))
-                abort();
+            FUZZ_CHECK(m->positions[k] >= -FLT_MAX && m->positions[k] <= FLT_MAX);
     }
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void draw(const scene *s)
 {
-    static const char *const names[] = {"s.scene", "m.obj", "m.mtl", "t.ppm", "k.pgm", "x.pfm"};
-    static int registered;
+    static pool *threads;
+    render_settings settings;
+    render_result result;
+    tool_error error;
+    uint64_t triangles = 0;
+    for (int32_t i = 0; i < s->mesh_count; i++)
+        triangles += s->meshes[i].triangles;
+    if ((int64_t)s->width * s->height > MOST_PIXELS || triangles > MOST_TRIANGLES)
+        return;
+    if (!threads && (threads = pool_create(1)) == NULL)
+        abort();
+    memset(&settings, 0, sizeof settings);
+    settings.shadow_size = 32;
+    settings.slices = 16;
+    settings.want_scatter = 1;
+    error.text[0] = '\0';
+    if (render_scene(s, "s.scene", &settings, threads, &result, &error) != 0) {
+        FUZZ_CHECK(error.text[0]);
+        return;
+    }
+    for (int32_t i = 0; i < 3 * s->width * s->height; i++) {
+        FUZZ_CHECK(result.scatter[i] >= 0 && result.scatter[i] <= FLT_MAX);
+        FUZZ_CHECK(result.radiance[i] >= 0 && result.radiance[i] <= FLT_MAX);
+    }
+    render_free(&result);
+}
+
+void fuzz_scene(const uint8_t *data, size_t size)
+{
+    static const char *const names[] = {"s.scene", "m.obj", "m.mtl", "t.ppm", "k.pgm"};
     tool_error error;
     scene s;
-    pfm picture;
-    if (!registered++)
-        atexit(files_remove);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        size_t length = 0;
-        while (length < size && data[length] != 1)
-            length++;
-        files_write(names[i], data, length);
-        data += length;
-        size -= length;
-        if (size) {
-            data++;
-            size--;
-        }
+    fuzz_files(data, size, names, 5);
+    error.text[0] = '\0';
+    if (scene_load(&s, files_path("s.scene"), &error) == 0) {
+        check_meshes(&s);
+        draw(&s);
+    } else {
+        FUZZ_CHECK(error.text[0] && !s.meshes && !s.images);
     }
-    if (scene_load(&s, files_path("s.scene"), &error) == 0)
-        check(&s);
-    else if (!error.text[0] || s.meshes || s.images)
-        abort();
     scene_free(&s);
-    if (pfm_load(&picture, files_path("x.pfm"), &error) == 0)
-        free(picture.values);
-    return 0;
 }
