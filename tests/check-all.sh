@@ -104,8 +104,11 @@ check_instructions() {
     part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/instructions.sh
 }
 
-# Some minutes of what `make fuzz` does for as long as one likes.
+# More random scenes, and some minutes of what `make fuzz` does for as long as one likes.
 check_fuzz() {
+    if quiet 'builds' "$MAKE" -s -j2 B="$B/main" "$B/main/tests"; then
+        part env TYN_ROUNDS=20 "$B/main/tests" properties moved
+    fi
     part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 30 frame raster fit scene post
     part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 8 obj mtl ppm pfm
 }
