@@ -205,7 +205,8 @@ typedef struct tyn_medium {
 #define TYN_MAX_MEDIA 8
 
 /* IVB's air at sea level (IVB section 6.8): media[0] Rayleigh, media[1] haze with g = 0.76, both multiplied by `scale`
- * (1 is the earth's air: shafts over kilometres. Small scenes want 100 and more). TYN_E_NULL, TYN_E_MEDIUM (scale < 0). */
+ * (1 is the earth's air: shafts over kilometres. Small scenes want 100 and more). TYN_E_NULL, TYN_E_MEDIUM
+ * (scale < 0, or so large that a frame could not have such media). */
 tyn_status tyn_medium_air(tyn_medium media[2], float scale);
 
 /* Air by what a weather report says. media[0] is Rayleigh, media[1] haze (Henyey and Greenstein, g = 0.76); nothing absorbs.
@@ -220,7 +221,7 @@ tyn_status tyn_medium_air(tyn_medium media[2], float scale);
  *   media[0].scatter = E / turbidity * R / R(550)
  *   media[1].scatter = E (turbidity - 1) / turbidity * (550 nm / wavelength)^angstrom
  * A small scene wants a small visibility: 300 m shows shafts in a street, 50 m in a hall.
- * TYN_E_NULL, TYN_E_MEDIUM (out of range, or a visibility so small that the coefficients overflow). */
+ * TYN_E_NULL, TYN_E_MEDIUM (out of range, or a visibility so small that a frame could not have such media). */
 tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibility, float angstrom);
 
 /* ---- light and its shadow map -------------------------------------------------------------------------------------- */

@@ -107,22 +107,28 @@ tyn_status tyn_camera_from_matrices(tyn_camera *camera, const float view[16], co
     return TYN_OK;
 }
 
+/* Rayleigh and haze, if they are media that a frame may have. */
+static tyn_status set_air(tyn_medium media[2], const tyn_medium made[2])
+{
+    tyn_status status = tyni_check_media(made, 2);
+    if (status == TYN_OK)
+        memcpy(media, made, 2 * sizeof *media);
+    return status;
+}
+
 tyn_status tyn_medium_air(tyn_medium media[2], float scale)
 {
+    tyn_medium made[2] = {{{0}, {0}, TYN_PHASE_RAYLEIGH, 0}, {{0}, {0}, TYN_PHASE_HG, 0.76f}};
     static const float rayleigh[3] = {5.8e-6f, 13.5e-6f, 33.1e-6f};
     if (!media)
         return TYN_E_NULL;
-    if (!tyni_finite(scale) || scale < 0.0f)
+    if (!(scale >= 0.0f))
         return TYN_E_MEDIUM;
-    memset(media, 0, 2 * sizeof *media);
     for (int32_t c = 0; c < 3; c++) {
-        media[0].scatter[c] = rayleigh[c] * scale;
-        media[1].scatter[c] = 2.0e-5f * scale;
+        made[0].scatter[c] = rayleigh[c] * scale;
+        made[1].scatter[c] = 2.0e-5f * scale;
     }
-    media[0].phase = TYN_PHASE_RAYLEIGH;
-    media[1].phase = TYN_PHASE_HG;
-    media[1].g = 0.76f;
-    return TYN_OK;
+    return set_air(media, made);
 }
 
 tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibility, float angstrom)
@@ -130,6 +136,7 @@ tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibi
     /* Rayleigh scattering as in tyn_medium_air; its channels are the wavelengths 680, 550 and 440 nm (Bruneton and Neyret 2008)
      */
     static const float rayleigh[3] = {5.8e-6f, 13.5e-6f, 33.1e-6f};
+    tyn_medium made[2] = {{{0}, {0}, TYN_PHASE_RAYLEIGH, 0}, {{0}, {0}, TYN_PHASE_HG, 0.76f}};
     static const float log_ratio[3] = {-0.2121745f, 0.0f, 0.2231436f}; /* of 550 nm to the wavelength */
     float air, haze;
     if (!media)
@@ -139,18 +146,11 @@ tyn_status tyn_medium_weather(tyn_medium media[2], float turbidity, float visibi
         return TYN_E_MEDIUM;
     air = visibility > 0.0f ? 3.912f / visibility / turbidity : rayleigh[1];
     haze = air * (turbidity - 1.0f);
-    /* the largest coefficients must be numbers that can be added up */
-    if (!(air < 1e30f) || !(haze < 1e30f))
-        return TYN_E_MEDIUM;
-    memset(media, 0, 2 * sizeof *media);
     for (int32_t c = 0; c < 3; c++) {
-        media[0].scatter[c] = air * (rayleigh[c] / rayleigh[1]);
-        media[1].scatter[c] = haze * tyni_num_exp(angstrom * log_ratio[c]);
+        made[0].scatter[c] = air * (rayleigh[c] / rayleigh[1]);
+        made[1].scatter[c] = haze * tyni_num_exp(angstrom * log_ratio[c]);
     }
-    media[0].phase = TYN_PHASE_RAYLEIGH;
-    media[1].phase = TYN_PHASE_HG;
-    media[1].g = 0.76f;
-    return TYN_OK;
+    return set_air(media, made);
 }
 
 static tyn_status check_fit(const tyn_light *light, const tyn_camera *camera)

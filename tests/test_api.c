@@ -86,6 +86,8 @@ static void test_air(void)
     memcpy(before, media, sizeof media);
     CHECK(tyn_medium_air(NULL, 1) == TYN_E_NULL);
     CHECK(tyn_medium_air(media, -1) == TYN_E_MEDIUM);
+    CHECK(tyn_medium_air(media, -1e-45f) == TYN_E_MEDIUM);
+    CHECK(tyn_medium_air(media, 1e24f) == TYN_E_MEDIUM);
     CHECK(tyn_medium_air(media, BIG_NAN) == TYN_E_MEDIUM);
     CHECK(tyn_medium_air(media, BIG_INF) == TYN_E_MEDIUM);
     CHECK(memcmp(before, media, sizeof media) == 0);

@@ -14,17 +14,9 @@ static void test_weather(void)
 {
     static const struct {
         float turbidity, visibility, angstrom;
-    } bad[] = {{0.9f, 1000, 1},
-               {(float)NAN, 1000, 1},
-               {(float)INFINITY, 1000, 1},
-               {2, -1, 1},
-               {2, (float)NAN, 1},
-               {2, (float)INFINITY, 1},
-               {2, 1000, -0.1f},
-               {2, 1000, 4.1f},
-               {2, 1e-35f, 1},
-               {2, 1000, (float)NAN},
-               {3e38f, 0, 1}};
+    } bad[] = {{0.9f, 1000, 1},    {(float)NAN, 1000, 1},   {(float)INFINITY, 1000, 1}, {2, -1, 1},
+               {2, (float)NAN, 1}, {2, (float)INFINITY, 1}, {2, 1000, -0.1f},           {2, 1000, 4.1f},
+               {2, 1e-35f, 1},     {2, 1e-13f, 1},          {2, 1000, (float)NAN},      {3e38f, 0, 1}};
     tyn_medium media[2], air[2], before[2];
     TEST("tyn_medium_weather: Koschmieder, Angstrom, and the earth's air");
     CHECK(tyn_medium_air(air, 1) == TYN_OK);
