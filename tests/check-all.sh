@@ -107,7 +107,7 @@ check_instructions() {
 # More random scenes, and some minutes of what `make fuzz` does for as long as one likes.
 check_fuzz() {
     if quiet 'builds' "$MAKE" -s -j2 B="$B/main" "$B/main/tests"; then
-        part env TYN_ROUNDS=20 "$B/main/tests" properties moved
+        part env TYN_ROUNDS=40 "$B/main/tests" properties moved fences fences_raster
     fi
     part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 30 frame raster fit scene post
     part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 8 obj mtl ppm pfm

@@ -127,7 +127,7 @@ static void run(void *context, tyn_job job, void *argument, int32_t count)
         turn[i] = turn[k];
         turn[k] = swap;
     }
-    for (int32_t i = crew->fault == 1; i < count; i++)
+    for (int32_t i = crew->fault == 4 ? count : crew->fault == 1; i < count; i++)
         job(argument, turn[i],
             crew->fault == 3 && i == 0 ? crew->executor.workers : (int32_t)(test_random() % (uint32_t)crew->executor.workers));
     if (crew->fault == 2 && count)

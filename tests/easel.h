@@ -38,7 +38,7 @@ typedef enum easel_order { EASEL_FORWARD, EASEL_REVERSED, EASEL_SHUFFLED } easel
 typedef struct easel_crew {
     tyn_executor executor;
     easel_order order;
-    int32_t fault; /* 1: leaves a job out; 2: runs one twice; 3: a worker number out of range */
+    int32_t fault; /* 1: leaves a job out; 2: runs one twice; 3: a worker number out of range; 4: refuses */
 } easel_crew;
 void easel_hire(easel_crew *crew, easel_order order, int32_t workers);
 

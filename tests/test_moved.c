@@ -100,7 +100,7 @@ static double tolerance(const drawn *d, int mirror)
 static void check_moved(void)
 {
     TEST("a world turned with its camera gives the same picture");
-    for (int n = draw_rounds(20); n--;) {
+    for (int n = draw_rounds(8); n--;) {
         drawn d = draw_one();
         motion m = random_motion();
         float *here;
@@ -119,7 +119,7 @@ static void check_mirrored(void)
 {
     static const motion mirror = {{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
     TEST("a mirrored world gives the mirrored picture");
-    for (int n = draw_rounds(20); n--;) {
+    for (int n = draw_rounds(8); n--;) {
         drawn d = draw_one();
         tyn_camera *c = &d.frame.camera;
         float *here, left = c->left_edge;

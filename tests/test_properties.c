@@ -20,7 +20,7 @@ static int within(const float *v, size_t count, float most)
 static void check_range(void)
 {
     TEST("light in the air is finite and not negative, surfaces only lose");
-    for (int n = draw_rounds(30); n--;) {
+    for (int n = draw_rounds(12); n--;) {
         drawn d = draw_one();
         float *share = draw_copy(d.r->scatter, d.count), *target = draw_copy(d.r->scatter, d.count);
         int holds;
@@ -45,7 +45,7 @@ static void check_range(void)
 static void check_denser(void)
 {
     TEST("a denser medium lets no more through");
-    for (int n = draw_rounds(10); n--;) {
+    for (int n = draw_rounds(5); n--;) {
         drawn d = draw_one();
         float *thin = draw_copy(d.r->scatter, d.count);
         int holds = 1;
@@ -71,7 +71,7 @@ static void check_clear(void)
 {
     static const tyn_format formats[] = {TYN_RGB_F32, TYN_RGBA8_SRGB, TYN_BGRA8_SRGB, TYN_RGB565_SRGB};
     TEST("clear air leaves the picture as it is");
-    for (int n = draw_rounds(40); n--;) {
+    for (int n = draw_rounds(16); n--;) {
         drawn d = draw_one();
         tyn_image from = {d.r->colour, d.r->width, d.r->height, 0, TYN_RGB_F32};
         guard picture = guard_new(d.r->width, d.r->height, formats[n % 4], n & 4);
@@ -98,7 +98,7 @@ static void check_clear(void)
 static void check_scaled(void)
 {
     TEST("scaling the lights scales their light in the air");
-    for (int n = draw_rounds(20); n--;) {
+    for (int n = draw_rounds(8); n--;) {
         drawn d = draw_one();
         const float factor = n & 1 ? 16.0f : (float)draw_between(0.01, 50);
         float *one;
@@ -118,7 +118,7 @@ static void check_scaled(void)
 static void check_sum(void)
 {
     TEST("the light of several lights is the sum of each one's");
-    for (int n = draw_rounds(20); n--;) {
+    for (int n = draw_rounds(8); n--;) {
         drawn d = draw_one();
         float *sum = calloc(d.count, sizeof *sum);
         if (!sum)
@@ -208,9 +208,37 @@ static void check_same(void)
 {
     static const tyn_format formats[] = {TYN_RGB_F32, TYN_RGBA8_SRGB, TYN_BGRA8_SRGB, TYN_RGB565_SRGB};
     TEST("instruction sets, workers, order, what was rendered before: the same bytes, and none beside them");
-    for (int n = draw_rounds(12); n--;) {
+    for (int n = draw_rounds(4); n--;) {
         drawn d = draw_one();
         draw_done(&d, same(&d, formats[n % 4]));
+    }
+}
+
+/* ---- a clock that stands still --------------------------------------------------------------------------------------- */
+
+static uint64_t noon(void *context)
+{
+    (void)context;
+    return 43200;
+}
+
+static void check_clock(void)
+{
+    TEST("a clock that stands still takes no time and changes nothing");
+    for (int n = draw_rounds(4); n--;) {
+        drawn d = draw_one();
+        float *before;
+        const tyn_stats *s = &d.r->stats;
+        int holds;
+        draw_render(&d);
+        before = draw_copy(d.r->scatter, d.count);
+        d.frame.clock = noon;
+        draw_render(&d);
+        holds = memcmp(before, d.r->scatter, d.count * sizeof *before) == 0;
+        holds &= !s->slice_ns && !s->gather_ns && !s->total_ns && !s->sample_ns && !s->row_ns && !s->ray_ns && !s->line_ns;
+        holds &= !s->unwarp_ns && !s->correct_ns && !s->upscale_ns && !s->composite_ns;
+        free(before);
+        draw_done(&d, holds);
     }
 }
 
@@ -222,4 +250,5 @@ void test_properties(void)
     check_scaled();
     check_sum();
     check_same();
+    check_clock();
 }

@@ -256,7 +256,7 @@ static void run_badly(void *context, tyn_job job, void *argument, int32_t count)
 {
     int32_t kind = *(int32_t *)context;
     for (int32_t i = 0; i < count; i++) {
-        if (kind == 0 && i == 1)
+        if (kind == 3 || (kind == 0 && i == 1)) /* 3: refuses */
             continue;
         job(argument, i, kind == 1 ? 2 : 0);
         if (kind == 2)
@@ -286,7 +286,7 @@ static void test_executors(void)
         }
     executor.run = run_badly;
     executor.workers = 2;
-    for (knob = 0; knob < 3; knob++)
+    for (knob = 0; knob < 4; knob++)
         CHECK(tyn_query(&frame, point, result, PIXELS) == TYN_E_EXECUTOR);
     rig_free(r);
 }

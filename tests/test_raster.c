@@ -413,7 +413,7 @@ static void test_order(void)
             different += memcmp(&e.stats, &first_stats, sizeof first_stats) != 0;
             CHECK(tyn_raster_shadow(e.raster, &shadow, map, mesh, 5, &crew.executor, NULL, NULL, NULL) == TYN_OK);
             different += memcmp(map, first_map, sizeof map) != 0;
-            for (crew.fault = 1; crew.fault <= 3; crew.fault++)
+            for (crew.fault = 1; crew.fault <= 4; crew.fault++)
                 CHECK(easel_draw(&e, mesh, 5) == TYN_E_EXECUTOR);
             easel_free(&e);
         }

@@ -2,13 +2,14 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "rig.h"
 #include "guard.h"
 #include "test.h"
 
-/* Executors of all kinds. `kind` of a crowd: */
-enum { IN_ORDER, REVERSED, SHUFFLED, THREADS, KINDS };
+/* Executors of all kinds. `kind` of a crowd; LATE: threads that dawdle before each job. */
+enum { IN_ORDER, REVERSED, SHUFFLED, THREADS, LATE, KINDS };
 
 typedef struct crowd {
     int32_t workers;
@@ -19,7 +20,7 @@ typedef struct share {
     pthread_t thread;
     tyn_job job;
     void *argument;
-    int32_t *next, count, worker;
+    int32_t *next, count, worker, late;
     pthread_mutex_t *lock;
 } share;
 
@@ -33,6 +34,10 @@ static void *work(void *of)
         pthread_mutex_unlock(s->lock);
         if (i >= s->count)
             return NULL;
+        if (s->late) {
+            const struct timespec while_others_work = {0, 1000 * ((i * 7 + s->worker) % 5)};
+            nanosleep(&while_others_work, NULL);
+        }
         s->job(s->argument, i, s->worker);
     }
 }
@@ -49,6 +54,7 @@ static void run_threads(const crowd *c, tyn_job job, void *argument, int32_t cou
         s.next = &next;
         s.count = count;
         s.worker = w;
+        s.late = c->kind == LATE;
         s.lock = &lock;
         shares[w] = s;
         if (pthread_create(&shares[w].thread, NULL, work, &shares[w]))
@@ -62,7 +68,7 @@ static void run_crowd(void *context, tyn_job job, void *argument, int32_t count)
 {
     const crowd *c = context;
     int32_t *order;
-    if (c->kind == THREADS) {
+    if (c->kind >= THREADS) {
         run_threads(c, job, argument, count);
         return;
     }
@@ -96,7 +102,7 @@ static void test_any_workers(void)
             target = rig_hash(r->target, W * H * 4);
             stats = r->stats;
             for (int32_t workers = 1; workers <= 7; workers++)
-                for (int kind = 0; kind < KINDS; kind++) {
+                for (int kind = 0; kind < (workers == 3 ? KINDS : LATE); kind++) {
                     crowd c = {workers, kind};
                     tyn_executor executor = {run_crowd, &c, workers};
                     config.workers = workers + (kind == SHUFFLED); /* room for more than come */
@@ -117,6 +123,8 @@ static void test_any_workers(void)
 static void run_bad(void *context, tyn_job job, void *argument, int32_t count)
 {
     int kind = *(const int *)context;
+    if (kind == 6) /* refuses */
+        return;
     for (int32_t i = 0; i < count; i++) {
         if (kind == 0 && i == count - 1)
             continue; /* forgets one */
@@ -129,8 +137,8 @@ static void run_bad(void *context, tyn_job job, void *argument, int32_t count)
 static void test_bad_executors(void)
 {
     rig *r = rig_stock("sun ahead", 40, 30, 64);
-    TEST("tyn_render: executors that forget, repeat or miscount");
-    for (int kind = 0; kind < 6; kind++)
+    TEST("tyn_render: executors that forget, repeat, miscount or refuse");
+    for (int kind = 0; kind < 7; kind++)
         for (int way = 0; way < RIG_WAYS; way++) {
             tyn_config config = rig_way_config(r, &rig_ways[way]);
             tyn_frame frame = rig_frame(r);
