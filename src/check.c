@@ -16,7 +16,7 @@ int tyni_check_colour(const float v[3])
     return tyni_check_finite(v, 3) && v[0] >= 0.0f && v[1] >= 0.0f && v[2] >= 0.0f;
 }
 
-static int within(const float *v, int32_t n, float most)
+int tyni_check_within(const float *v, int32_t n, float most)
 {
     for (int32_t i = 0; i < n; i++)
         if (!(tyni_absf(v[i]) <= most))
@@ -94,7 +94,7 @@ tyn_status tyni_check_camera(const tyn_camera *c)
         return TYN_E_CAMERA;
     if (!(c->far_depth <= TYN_MAX_LENGTH) || !(c->near_depth >= 1.0f / TYN_MAX_LENGTH) || !(c->near_depth < c->far_depth))
         return TYN_E_CAMERA;
-    if (!within(c->position, 3, TYN_MAX_LENGTH) || !within(&c->left_edge, 4, TYN_MAX_LENGTH))
+    if (!tyni_check_within(c->position, 3, TYN_MAX_LENGTH) || !tyni_check_within(&c->left_edge, 4, TYN_MAX_LENGTH))
         return TYN_E_CAMERA;
     return TYN_OK;
 }
@@ -145,9 +145,9 @@ static tyn_status check_light(const tyn_light *l, int32_t shadow_limit, int32_t 
         return TYN_E_LIGHT;
     if (!tyni_check_colour(l->colour) || (l->kind != TYN_LIGHT_POINT && !unit(l->direction)))
         return TYN_E_LIGHT;
-    if (l->kind != TYN_LIGHT_DIRECTIONAL && !within(l->position, 3, TYN_MAX_LENGTH))
+    if (l->kind != TYN_LIGHT_DIRECTIONAL && !tyni_check_within(l->position, 3, TYN_MAX_LENGTH))
         return TYN_E_LIGHT;
-    if (!within(l->colour, 3, TYN_MAX_COLOUR))
+    if (!tyni_check_within(l->colour, 3, TYN_MAX_COLOUR))
         return TYN_E_LIGHT;
     if (!tyni_finite(l->scale) || !tyni_check_colour(l->tint))
         return TYN_E_LIGHT;
@@ -185,7 +185,7 @@ tyn_status tyni_check_media(const tyn_medium *media, int32_t count)
         return TYN_E_NULL;
     for (int32_t i = 0; i < count; i++) {
         const tyn_medium *m = &media[i];
-        if (!within(m->scatter, 3, TYN_MAX_LENGTH) || !within(m->absorb, 3, TYN_MAX_LENGTH))
+        if (!tyni_check_within(m->scatter, 3, TYN_MAX_LENGTH) || !tyni_check_within(m->absorb, 3, TYN_MAX_LENGTH))
             return TYN_E_MEDIUM;
         if (!tyni_check_colour(m->scatter) || !tyni_check_colour(m->absorb) || (uint32_t)m->phase > (uint32_t)TYN_PHASE_HG)
             return TYN_E_MEDIUM;

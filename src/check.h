@@ -28,6 +28,8 @@ tyn_status tyni_check_bounds(const float low[3], const float high[3]);
 /* All of n floats finite; and not below 0. */
 int tyni_check_finite(const float *v, int32_t n);
 int tyni_check_colour(const float v[3]);
+/* None of n beyond `most`, on either side, or NaN. */
+int tyni_check_within(const float *v, int32_t n, float most);
 
 /* The stored values of a range's ends, of which 0, 0 means 0, 1; 0 where they are too close together, or too large, to compute
  * with. */

@@ -230,7 +230,7 @@ tyn_status tyn_shadow_fit_cube(tyn_shadow faces[6], const float position[3], flo
 {
     if (!faces || !position)
         return TYN_E_NULL;
-    if (!tyni_check_finite(position, 3) || !tyni_finite(reach) || !(reach > 0.0f))
+    if (!tyni_check_within(position, 3, TYN_MAX_LENGTH) || !tyni_finite(reach) || !(reach > 0.0f))
         return TYN_E_LIGHT;
     for (int32_t i = 0; i < 6; i++)
         tyni_fit_face(faces[i].matrix, position, i, reach, faces[i].size);

@@ -215,7 +215,7 @@ static void test_fit_scene(void)
 /* Where a cube's six faces meet there is no gap, and each face looks along its axis. */
 static void test_fit_cube(void)
 {
-    const float at[3] = {1, 2, 3}, bad[3] = {0, BIG_NAN, 0};
+    const float at[3] = {1, 2, 3}, bad[3] = {0, BIG_NAN, 0}, far_off[3] = {0, 0, -1.01f * TYN_MAX_LENGTH};
     tyn_shadow faces[6], before[6];
     TEST("tyn_shadow_fit_cube");
     memset(faces, 0, sizeof faces);
@@ -223,6 +223,7 @@ static void test_fit_cube(void)
     CHECK(tyn_shadow_fit_cube(NULL, at, 5) == TYN_E_NULL);
     CHECK(tyn_shadow_fit_cube(faces, NULL, 5) == TYN_E_NULL);
     CHECK(tyn_shadow_fit_cube(faces, bad, 5) == TYN_E_LIGHT);
+    CHECK(tyn_shadow_fit_cube(faces, far_off, 5) == TYN_E_LIGHT);
     CHECK(tyn_shadow_fit_cube(faces, at, 0) == TYN_E_LIGHT);
     CHECK(tyn_shadow_fit_cube(faces, at, BIG_INF) == TYN_E_LIGHT);
     CHECK(memcmp(before, faces, sizeof faces) == 0);
