@@ -80,7 +80,7 @@ for target in "${@:-all}"; do
         before=$(found "$name")
         TYN_FUZZ=$name
         export TYN_FUZZ
-        if run_$kind "$name" && [ "$(found "$name")" = "$before" ]; then
+        if run_"$kind" "$name" && [ "$(found "$name")" = "$before" ]; then
             pass
         else
             tail -n 40 "$where/$name.log" | fail "fuzz $name: see $where/found" -

@@ -125,7 +125,7 @@ static void change(given *g)
     fuzz_edit(&g->in, &s);
 }
 
-static int finite(const float *v, int count)
+static int all_finite(const float *v, int count)
 {
     for (int i = 0; i < count; i++)
         if (!(v[i] >= -FLT_MAX && v[i] <= FLT_MAX))
@@ -157,7 +157,7 @@ static void use(const tyn_camera *camera, const tyn_medium *media, int32_t mediu
         f.light_count = 1;
     }
     FUZZ_CHECK(tyn_query(&f, &point, &result, 1) == TYN_OK);
-    FUZZ_CHECK(finite(result.scatter, 3) && finite(result.transmittance, 3));
+    FUZZ_CHECK(all_finite(result.scatter, 3) && all_finite(result.transmittance, 3));
 }
 
 static void cameras(given *g)
@@ -198,7 +198,7 @@ static void check_maps(const given *g, tyn_shadow *maps, const tyn_shadow *befor
 {
     static const tyn_medium medium = {{0.1f, 0.1f, 0.1f}, {0, 0, 0}, TYN_PHASE_ISOTROPIC, 0};
     for (int32_t i = 0; i < count && status == TYN_OK; i++) {
-        FUZZ_CHECK(finite(maps[i].matrix, 16));
+        FUZZ_CHECK(all_finite(maps[i].matrix, 16));
         use(&g->camera, &medium, 1, light, &maps[i]);
         memcpy(maps[i].matrix, before[i].matrix, sizeof maps[i].matrix);
     }
