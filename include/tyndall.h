@@ -293,7 +293,8 @@ typedef struct tyn_light {
     int32_t texture_count;
     float up[3];     /* spot, directional with a texture: not parallel to direction */
     float extent[2]; /* directional with a texture: > 0 */
-    /* Art, not physics: both multiply the light that the medium scatters, not that on surfaces. */
+    /* Art, not physics: both multiply the light that the medium scatters, not that on surfaces. What they make of a colour ends
+     * at TYN_MAX_COLOUR. */
     float scale;   /* 0 means 1, below 0 means none: the light has no shafts, and costs nothing in tyn_render */
     float tint[3]; /* RGB, >= 0; 0 0 0 means 1 1 1 */
 } tyn_light;

@@ -8,8 +8,10 @@ void tyni_art_lamp(tyni_lamp *lamp, const tyn_light *light, const tyn_frame *fra
     const float *tint = light->tint;
     int white = !(tint[0] > 0.0f || tint[1] > 0.0f || tint[2] > 0.0f);
     float scale = tyni_art_factor(light->scale);
-    for (int32_t c = 0; c < 3; c++)
-        lamp->colour[c] *= white ? scale : scale * tint[c];
+    for (int32_t c = 0; c < 3; c++) { /* no brighter than a colour may be given */
+        float factor = tyni_minf(white ? scale : scale * tint[c], TYN_MAX_COLOUR);
+        lamp->colour[c] = tyni_minf(lamp->colour[c] * factor, TYN_MAX_COLOUR);
+    }
     lamp->lift = 1.0f - tyni_art_factor(frame->shaft_contrast);
 }
 

@@ -264,6 +264,8 @@ static void test_statuses(void)
     rig *r = rig_stock("sun ahead", 16, 12, 64);
     tyn_config config = rig_config(r, TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS);
     tyn_context *context = rig_context(&config);
+    const tyn_query_point point = {7, 5, 9};
+    tyn_query_result result;
     TEST("art controls: out of range");
     CHECK(context != NULL);
     for (int n = 0; context && n < 3; n++)
@@ -284,6 +286,11 @@ static void test_statuses(void)
             CHECK(tyn_render(context, &frame) == (field == 1 || field == 2 ? TYN_E_LIGHT : field == 5 ? TYN_E_MEDIUM : TYN_OK));
             *at[field] = 3e38f; /* finite in, finite out */
             CHECK(tyn_render(context, &frame) == TYN_OK);
+            for (int i = 0; i < 3 * 16 * 12; i++)
+                CHECK(r->scatter[i] >= 0 && r->scatter[i] <= 3e38f);
+            CHECK(tyn_query(&frame, &point, &result, 1) == TYN_OK);
+            for (int k = 0; k < 3; k++)
+                CHECK(result.scatter[k] >= 0 && result.scatter[k] <= 3e38f);
         }
     free(context);
     rig_free(r);
