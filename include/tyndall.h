@@ -345,10 +345,11 @@ tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, cons
 /* Klehm et al. 2014, section 4.2: the matrices of `count` maps, 1 .. TYN_MAX_MAPS, in which every view ray of a perspective
  * camera stays in one row at one depth, so that a rasterizer draws what shafts are computed from with nothing to resample;
  * for a directional light: maps[0] is its `shadow`, maps[1] .. its `more`. They cover all that the camera can see from the
- * depth `from` (> 0; 0: the near end) up to `distance` (0: the far end), one behind the other in equal ratios: the more, the
- * more even their texels. What is nearer is looked up in the maps after them, and is as `outside` says if there are none: a
- * fitted map as the last of `more` closes that gap. Casters nearer to the light must be clamped to the near end when a map is
- * rendered (tyn_raster_shadow does). Sizes, if set, give margins. For the medium alone: surfaces want a map without gaps.
+ * depth `from` (as a near depth; 0: the near end) up to `distance` (0: the far end), one behind the other in equal ratios: the
+ * more, the more even their texels. What is nearer is looked up in the maps after them, and is as `outside` says if there are
+ * none: a fitted map as the last of `more` closes that gap. Casters nearer to the light must be clamped to the near end when a
+ * map is rendered (tyn_raster_shadow does). Sizes, if set, give margins. For the medium alone: surfaces want a map without
+ * gaps.
  * TYN_E_NULL, TYN_E_CAMERA (also orthographic, and from and distance out of order), TYN_E_LIGHT (kind, direction, sizes; and
  * where tyn_shadow_rectifiable is 0), TYN_E_LIMIT (count). */
 tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_light *light, const tyn_camera *camera,

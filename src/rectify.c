@@ -126,7 +126,7 @@ tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_l
         return TYN_E_LIMIT;
     distance = distance > 0.0f ? tyni_minf(distance, camera->far_depth) : distance == 0.0f ? camera->far_depth : -1.0f;
     from = from == 0.0f ? camera->near_depth : from;
-    if (!(from > 0.0f && from < distance))
+    if (!(from >= 1.0f / TYN_MAX_LENGTH && from < distance))
         return TYN_E_CAMERA;
     for (int32_t i = 0; i < count; i++)
         if (maps[i].size < 0 || maps[i].size > TYN_MAX_SHADOW || maps[i].height < 0 || maps[i].height > TYN_MAX_SHADOW)

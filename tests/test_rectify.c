@@ -72,6 +72,7 @@ static void test_maps(void)
         CHECK(tyn_shadow_fit_rectified(maps, 1, NULL, &r->camera, 0, 0) == TYN_E_NULL);
         CHECK(tyn_shadow_fit_rectified(maps, 1, l, NULL, 0, 0) == TYN_E_NULL);
         CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, -1, 0) == TYN_E_CAMERA);
+        CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 1e-40f, 0) == TYN_E_CAMERA);
         CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 5, 4) == TYN_E_CAMERA);
         CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, 0, -4) == TYN_E_CAMERA);
         CHECK(tyn_shadow_fit_rectified(maps, 1, l, &r->camera, (float)NAN, 0) == TYN_E_CAMERA);
