@@ -348,7 +348,7 @@ static float farthest(const tyn_light *light, const tyn_camera *camera, const ty
         tyni_vec3 p = tyni_vec((i & 1 ? c->high : c->low)[0], (i & 2 ? c->high : c->low)[1], (i & 4 ? c->high : c->low)[2]);
         reach = tyni_maxf(reach, tyni_vec_length(tyni_vec_sub(p, from)));
     }
-    return reach > 0.0f ? reach : camera->far_depth;
+    return reach > 0.0f ? tyni_minf(reach, TYN_MAX_LENGTH) : camera->far_depth; /* the square of a length may be infinite */
 }
 
 /* Looks along d from a point, over a square of tangents -half .. half along a and b. w is the depth from the light, u = 1/2 +

@@ -156,13 +156,14 @@ static void test_fit(void)
 static void test_fit_scene(void)
 {
     static const float corners[12] = {-5, 0, 5, 5, 0, 5, 0, 0, -9, 0, 4, 0};
+    static const float far_corners[12] = {-5, 0, 1e24f, 5, 0, 5, 0, 0, -9, 0, 4, 0};
     static const uint32_t indices[6] = {0, 1, 2, 0, 1, 3};
     static float depth_pixels[4] = {3, 9, 50, 20};
     const float from[3] = {0, 1, 8}, to[3] = {0, 1, 0}, up[3] = {0, 1, 0};
     tyn_image depth = {depth_pixels, 2, 2, 0, TYN_DEPTH_F32}, odd;
     tyn_mesh mesh, bad;
     tyn_camera camera;
-    tyn_light light, before;
+    tyn_light light, before, spot;
     TEST("tyn_shadow_fit_scene");
     memset(&mesh, 0, sizeof mesh);
     mesh.positions = corners;
@@ -194,6 +195,13 @@ static void test_fit_scene(void)
     CHECK(tyn_shadow_fit_scene(&light, &camera, &depth, &mesh, 1) == TYN_E_CAMERA);
     camera.near_depth = 0.1f;
     CHECK(memcmp(&light, &before, sizeof light) == 0);
+    spot = light;
+    spot.kind = TYN_LIGHT_SPOT;
+    spot.angle = 1;
+    bad = mesh, bad.positions = far_corners; /* finite, but its square is not */
+    CHECK(tyn_shadow_fit_scene(&spot, &camera, &depth, &bad, 1) == TYN_OK);
+    for (int i = 0; i < 16; i++)
+        CHECK(isfinite(spot.shadow.matrix[i]));
     /* the board's top and the ground under it are in the map, whatever the depth buffer and the meshes are */
     for (int n = 0; n < 4; n++) {
         float *m = light.shadow.matrix, z[2];
