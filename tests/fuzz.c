@@ -299,3 +299,31 @@ void fuzz_files(const uint8_t *data, size_t size, const char *const *names, int 
         }
     }
 }
+
+void fuzz_shadow_slots(fuzz_slots *s, tyn_shadow *m, int32_t *stride)
+{
+    fuzz_int_slots(s, &m->size, 1);
+    fuzz_floats(s, m->matrix, 16);
+    fuzz_int_slots(s, &m->height, 1);
+    fuzz_int_slots(s, &m->format, 1);
+    fuzz_int_slots(s, stride, 1);
+    fuzz_int_slots(s, &m->coding, 1);
+    fuzz_floats(s, &m->at_near, 1);
+    fuzz_floats(s, &m->at_far, 1);
+    fuzz_floats(s, &m->scale, 1);
+    fuzz_floats(s, &m->bias, 1);
+}
+
+void fuzz_light_slots(fuzz_slots *s, tyn_light *l)
+{
+    fuzz_int_slots(s, &l->kind, 1);
+    fuzz_floats(s, l->position, 3);
+    fuzz_floats(s, l->direction, 3);
+    fuzz_floats(s, l->colour, 3);
+    fuzz_floats(s, &l->angle, 1);
+    fuzz_int_slots(s, &l->more_count, 1);
+    fuzz_int_slots(s, &l->outside, 1);
+    fuzz_int_slots(s, &l->texture_count, 1);
+    fuzz_floats(s, l->up, 3);
+    fuzz_floats(s, l->extent, 2);
+}

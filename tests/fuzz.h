@@ -41,6 +41,10 @@ void fuzz_floats(fuzz_slots *s, float *at, int count);
 void fuzz_int_slots(fuzz_slots *s, void *at, int count); /* enums too */
 void fuzz_edit(fuzz_bytes *f, const fuzz_slots *s);
 
+/* Of a shadow map and its stride, and of a light without scale and tint. */
+void fuzz_shadow_slots(fuzz_slots *s, tyn_shadow *m, int32_t *stride);
+void fuzz_light_slots(fuzz_slots *s, tyn_light *l);
+
 /* ---- memory ---- */
 
 /* Exactly so many bytes, until fuzz_release. */

@@ -132,36 +132,6 @@ static void slots_image(fuzz_slots *s, tyn_image *image, int32_t *stride)
     fuzz_int_slots(s, stride, 1);
 }
 
-static void slots_shadow(fuzz_slots *s, tyn_shadow *m, int32_t *stride)
-{
-    fuzz_int_slots(s, &m->size, 1);
-    fuzz_floats(s, m->matrix, 16);
-    fuzz_int_slots(s, &m->height, 1);
-    fuzz_int_slots(s, &m->format, 1);
-    fuzz_int_slots(s, stride, 1);
-    fuzz_int_slots(s, &m->coding, 1);
-    fuzz_floats(s, &m->at_near, 1);
-    fuzz_floats(s, &m->at_far, 1);
-    fuzz_floats(s, &m->scale, 1);
-    fuzz_floats(s, &m->bias, 1);
-}
-
-static void slots_light(fuzz_slots *s, tyn_light *l)
-{
-    fuzz_int_slots(s, &l->kind, 1);
-    fuzz_floats(s, l->position, 3);
-    fuzz_floats(s, l->direction, 3);
-    fuzz_floats(s, l->colour, 3);
-    fuzz_floats(s, &l->angle, 1);
-    fuzz_int_slots(s, &l->more_count, 1);
-    fuzz_int_slots(s, &l->outside, 1);
-    fuzz_int_slots(s, &l->texture_count, 1);
-    fuzz_floats(s, l->up, 3);
-    fuzz_floats(s, l->extent, 2);
-    fuzz_floats(s, &l->scale, 1);
-    fuzz_floats(s, l->tint, 3);
-}
-
 static void slots_frame(fuzz_slots *s, tyn_frame *f)
 {
     fuzz_int_slots(s, &f->camera.kind, 1);
@@ -216,8 +186,10 @@ static void change(given *g)
     for (int i = 0; i < IMAGES; i++)
         slots_image(&s, image_of(&g->frame, i), &strides[n++]);
     for (int i = 0; i < LIGHTS; i++) {
-        slots_light(&s, &g->lights[i]);
-        slots_shadow(&s, &g->lights[i].shadow, &strides[n++]);
+        fuzz_light_slots(&s, &g->lights[i]);
+        fuzz_floats(&s, &g->lights[i].scale, 1);
+        fuzz_floats(&s, g->lights[i].tint, 3);
+        fuzz_shadow_slots(&s, &g->lights[i].shadow, &strides[n++]);
     }
     for (int i = 0; i < TYN_MAX_MEDIA; i++) {
         fuzz_floats(&s, g->media[i].scatter, 3);
@@ -226,7 +198,7 @@ static void change(given *g)
         fuzz_floats(&s, &g->media[i].g, 1);
     }
     for (int i = 0; i < MORE; i++)
-        slots_shadow(&s, &g->more[i], &strides[n++]);
+        fuzz_shadow_slots(&s, &g->more[i], &strides[n++]);
     for (int i = 0; i < 6; i++)
         slots_image(&s, &g->textures[i], &strides[n++]);
     fuzz_edit(&g->in, &s);

@@ -94,34 +94,6 @@ static void plain(given *g)
 
 /* ---- what may be changed ---- */
 
-static void slots_shadow(fuzz_slots *s, tyn_shadow *m, int32_t *stride)
-{
-    fuzz_int_slots(s, &m->size, 1);
-    fuzz_floats(s, m->matrix, 16);
-    fuzz_int_slots(s, &m->height, 1);
-    fuzz_int_slots(s, &m->format, 1);
-    fuzz_int_slots(s, stride, 1);
-    fuzz_int_slots(s, &m->coding, 1);
-    fuzz_floats(s, &m->at_near, 1);
-    fuzz_floats(s, &m->at_far, 1);
-    fuzz_floats(s, &m->scale, 1);
-    fuzz_floats(s, &m->bias, 1);
-}
-
-static void slots_light(fuzz_slots *s, tyn_light *l)
-{
-    fuzz_int_slots(s, &l->kind, 1);
-    fuzz_floats(s, l->position, 3);
-    fuzz_floats(s, l->direction, 3);
-    fuzz_floats(s, l->colour, 3);
-    fuzz_floats(s, &l->angle, 1);
-    fuzz_int_slots(s, &l->more_count, 1);
-    fuzz_int_slots(s, &l->outside, 1);
-    fuzz_int_slots(s, &l->texture_count, 1);
-    fuzz_floats(s, l->up, 3);
-    fuzz_floats(s, l->extent, 2);
-}
-
 static void slots_surface(fuzz_slots *s, given *g)
 {
     tyn_surface *f = &g->surface;
@@ -165,7 +137,7 @@ static void change(given *g)
         fuzz_int_slots(&s, g->indices[i], 9);
     }
     fuzz_int_slots(&s, &mesh_count, 1);
-    slots_shadow(&s, &g->target, &strides[4 + LIGHTS + MORE]);
+    fuzz_shadow_slots(&s, &g->target, &strides[4 + LIGHTS + MORE]);
     for (int i = 0; i < 4; i++) {
         fuzz_int_slots(&s, &images[i]->width, 1);
         fuzz_int_slots(&s, &images[i]->height, 1);
@@ -173,11 +145,11 @@ static void change(given *g)
         fuzz_int_slots(&s, &strides[n++], 1);
     }
     for (int i = 0; i < LIGHTS; i++) {
-        slots_light(&s, &g->lights[i]);
-        slots_shadow(&s, &g->lights[i].shadow, &strides[n++]);
+        fuzz_light_slots(&s, &g->lights[i]);
+        fuzz_shadow_slots(&s, &g->lights[i].shadow, &strides[n++]);
     }
     for (int i = 0; i < MORE; i++)
-        slots_shadow(&s, &g->more[i], &strides[n++]);
+        fuzz_shadow_slots(&s, &g->more[i], &strides[n++]);
     fuzz_edit(&g->in, &s);
     g->surface.mesh_count = mesh_count > MESHES ? MESHES : mesh_count;
     n = 0;
