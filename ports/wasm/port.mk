@@ -8,8 +8,7 @@ WASM_FLAGS = --target=wasm32 -nostdlib -nostdlibinc -Iports/wasm/include -Iports
     -ffp-contract=off -fno-math-errno -O2 -mbulk-memory -Iinclude -Isrc
 # No stack beyond what is here: below it there is nothing, so that one too deep ends the program.
 WASM_LINK = -Wl,--no-entry -Wl,--stack-first -Wl,-z,stack-size=65536
-# clang 14, packing scalars anew (SLP), merges stack slots in raster/setup.c that are both in use; clang 16 does not.
-WASM_simd = -msimd128 -fno-slp-vectorize
+WASM_simd = -msimd128
 WASM_shared = -matomics -mmutable-globals -Wl,--import-memory -Wl,--shared-memory -Wl,--max-memory=268435456 \
     -Wl,--export=__stack_pointer
 WASM_PAGE = $(addprefix $(B)/wasm/,index.html style.css page.js worker.js modules.js serve.mjs)
