@@ -228,7 +228,7 @@ static int fenced(inputs *in, fence_side side)
 static void check_frames(void)
 {
     TEST("frames: nothing is read beside an input, nor written into it");
-    for (int n = draw_rounds(3); n--;) {
+    for (int n = draw_rounds(2); n--;) {
         inputs *in = inputs_new();
         int holds = fenced(in, FENCE_AFTER) && fenced(in, FENCE_BEFORE);
         inputs_free(in, holds);
