@@ -2,8 +2,8 @@
 # check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; fuzzing; a fresh clone as
 # the README has it; renders of the shared data; the ports and the page; and other machines. About 50 minutes on 2 cores. What a
 # machine lacks is SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind fuzz instructions ports clone shared wasm
-#                                          sameness
+#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind coverage fuzz instructions ports clone shared
+#                                          wasm sameness
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -97,6 +97,21 @@ check_valgrind() {
     fi
     if quiet 'valgrind: builds' "$MAKE" -s -j2 B="$B/valgrind" CFLAGS='-O1 -g' "$B/valgrind/tests"; then
         part valgrind -q --error-exitcode=9 --leak-check=full "$B/valgrind/tests" api render golden
+    fi
+}
+
+# Of src/: goals 95 % of lines, 85 % of branches. build/check/coverage.txt lists what was not run.
+check_coverage() {
+    if ! have gcovr; then
+        skip 'no gcovr'
+        return
+    fi
+    if quiet 'coverage: builds' "$MAKE" -s -j2 B="$B/coverage" CC=gcc CFLAGS='-O1 -g --coverage -Wno-error' "$B/coverage/tests" \
+        "$B/coverage/tyndall"; then
+        part "$B/coverage/tests" -oracle
+        quiet 'coverage: 95 % of lines, 85 % of branches' gcovr -r . --object-directory "$B/coverage" -f 'src/.*' --exclude-throw-branches \
+            --fail-under-line 95 --fail-under-branch 85 -o "$B/coverage.txt"
+        sed -n 's/^TOTAL  */   coverage of lines: /p' "$B/coverage.txt"
     fi
 }
 
@@ -277,7 +292,7 @@ check_sameness() {
     part sh tests/sameness.sh
 }
 
-for check in format compilers sanitizers valgrind fuzz instructions ports clone shared wasm sameness; do
+for check in format compilers sanitizers valgrind coverage fuzz instructions ports clone shared wasm sameness; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)
