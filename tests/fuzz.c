@@ -286,17 +286,13 @@ tyn_executor fuzz_reversed(int32_t *workers)
 
 void fuzz_files(const uint8_t *data, size_t size, const char *const *names, int count)
 {
+    size_t at = 0;
     for (int i = 0; i < count; i++) {
-        size_t length = 0;
-        while (length < size && data[length] != 1)
-            length++;
-        files_write(names[i], data, length);
-        data += length;
-        size -= length;
-        if (size) {
-            data++;
-            size--;
-        }
+        size_t end = at;
+        while (end < size && data[end] != 1)
+            end++;
+        files_write(names[i], end > at ? data + at : NULL, end - at); /* an input of no bytes is NULL */
+        at = end < size ? end + 1 : end;
     }
 }
 
