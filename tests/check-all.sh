@@ -48,6 +48,7 @@ check_format() {
 }
 
 check_compilers() {
+    quiet 'builds' "$MAKE" -s -j2 B="$B/main" CC=gcc all && part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/proofs_install.sh
     quiet 'benchmarks build' "$MAKE" -s -j2 B="$B/bench" CC=gcc "$B/bench/bench" "$B/bench/bench-frame" \
         "$B/bench/bench-growth" "$B/bench/bench-papers" "$B/bench/bench-prefiltered"
     if have clang; then

@@ -7,19 +7,17 @@ export B CC CFLAGS MAKE
 
 # The longest of them beside all others: there are two cores.
 {
-    "$B/tests" accuracy art workers fourier door door_maps door_windows >"$B/long.log" 2>&1
+    "$B/tests" accuracy art workers fourier door door_maps door_windows rectify path >"$B/long.log" 2>&1
     echo $? >"$B/long.status"
-    for script in proofs proofs_install; do
-        sh tests/$script.sh >"$B/$script.log" 2>&1
-        echo $? >"$B/$script.status"
-    done
+    sh tests/proofs.sh >"$B/proofs.log" 2>&1
+    echo $? >"$B/proofs.status"
 } &
-part "$B/tests" -accuracy -art -workers -fourier -door -door_maps -door_windows
+part "$B/tests" -accuracy -art -workers -fourier -door -door_maps -door_windows -rectify -path
 for script in proofs_calls tool post ports; do
     part sh tests/$script.sh
 done
 wait
-for log in long proofs proofs_install; do
+for log in long proofs; do
     part sh -c "cat '$B/$log.log'; exit \$(cat '$B/$log.status')"
 done
 total
