@@ -85,7 +85,7 @@ for target in "${@:-all}"; do
         else
             tail -n 40 "$where/$name.log" | fail "fuzz $name: see $where/found" -
         fi
-        grep -o -e 'Done [0-9]* runs.*' -e 'cov: [0-9]* ft: [0-9]*' "$where/$name.log" | tail -n 2 | tr '\n' ' ' | sed "s/^/   $name: /"
+        grep -o -e 'Done [0-9]* runs.*' -e 'cov: [0-9]* ft: [0-9]*' -e '[0-9]* new corpus items found' "$where/$name.log" | tail -n 2 | tr '\n' ' ' | sed "s/^/   $name: /"
         echo
     done
 done
