@@ -86,7 +86,7 @@ check_sanitizers() {
         skip "no thread sanitizer in $cc"
     fi
     if can clang -fsanitize=memory; then # scalar: it takes what vectors mask out for used
-        variant msan clang '-O1 -g -DTYN_PLAIN_C -fsanitize=memory -fno-sanitize-recover=all' -oracle -accuracy
+        variant msan clang '-O1 -g -DTYN_PLAIN_C -fsanitize=memory -fno-sanitize-recover=all' -oracle -accuracy -art -fences -path -rectify
     else
         skip 'no memory sanitizer'
     fi
@@ -124,7 +124,7 @@ check_instructions() {
 # More random scenes, and some minutes of what `make fuzz` does for as long as one likes.
 check_fuzz() {
     if quiet 'builds' "$MAKE" -s -j2 B="$B/main" "$B/main/tests"; then
-        part env TYN_ROUNDS=40 "$B/main/tests" properties moved fences fences_raster
+        part env TYN_ROUNDS=10 "$B/main/tests" properties moved fences fences_raster
     fi
     part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 30 frame raster fit scene post
     part env B="$B" MAKE="$MAKE" sh tests/fuzz.sh libfuzzer 8 obj mtl ppm pfm
@@ -291,7 +291,7 @@ check_wasm() {
 }
 
 check_sameness() {
-    part env TYN_UNTIL=$((began + 4500)) sh tests/sameness.sh # 75 minutes: a machine may be slow
+    part env TYN_UNTIL=$((began + 3900)) sh tests/sameness.sh # 65 minutes: a machine may be slow
 }
 
 for check in format compilers sanitizers valgrind coverage fuzz instructions ports clone shared wasm sameness; do
