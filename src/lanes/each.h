@@ -16,6 +16,8 @@
 #define TYNI_ISA avx2
 #include TYNI_KERNEL
 #undef TYNI_ISA
+#endif
+#ifdef TYNI_LANES_AVX512
 #define TYNI_ISA avx512
 #include TYNI_KERNEL
 #undef TYNI_ISA

@@ -35,7 +35,7 @@ static int32_t here(void)
         if ((state & 0xe6u) == 0xe6u && (seven[1] & f_dq_bw_vl) == f_dq_bw_vl)
             isas |= TYN_ISA_AVX512;
     }
-    return isas;
+    return isas & tyn_isa_built();
 }
 #else
 static int32_t here(void)
@@ -46,8 +46,10 @@ static int32_t here(void)
 
 int32_t tyn_isa_built(void)
 {
-#if defined(TYNI_LANES_X86)
+#if defined(TYNI_LANES_AVX512)
     return TYN_ISA_SCALAR | TYN_ISA_SSE2 | TYN_ISA_AVX2 | TYN_ISA_AVX512;
+#elif defined(TYNI_LANES_X86)
+    return TYN_ISA_SCALAR | TYN_ISA_SSE2 | TYN_ISA_AVX2;
 #elif defined(TYNI_LANES_NEON)
     return TYN_ISA_SCALAR | TYN_ISA_NEON;
 #elif defined(TYNI_LANES_WASM)

@@ -73,6 +73,9 @@
 #if defined(__GNUC__) && !defined(TYN_PLAIN_C)
 #if defined(__x86_64__) || (defined(__i386__) && defined(__SSE2_MATH__))
 #define TYNI_LANES_X86 1
+#ifdef __x86_64__ /* gcc 12 joins two masks of 32 lanes to 64 bits wrongly in 32-bit code */
+#define TYNI_LANES_AVX512 1
+#endif
 #elif defined(__aarch64__) && !defined(__AARCH64EB__)
 #define TYNI_LANES_NEON 1
 #elif defined(__wasm_simd128__)
@@ -84,6 +87,8 @@
 #ifdef TYNI_LANES_X86
 #include "lanes/sse2.h"
 #include "lanes/avx2.h"
+#endif
+#ifdef TYNI_LANES_AVX512
 #include "lanes/avx512.h"
 #endif
 #ifdef TYNI_LANES_NEON
@@ -203,10 +208,15 @@
 
 /* Calls a kernel's function for an ISA that was picked: TYNI_LANES_CALL(isa, raster_span, (p, count)). Direct calls, so that
  * whoever follows the calls (compilers, the proof of stack) sees them. */
-#ifdef TYNI_LANES_X86
+#ifdef TYNI_LANES_AVX512
 #define TYNI_LANES_CALL(isa, name, arguments)                                                                                  \
     ((isa) == TYN_ISA_AVX512 ? tyni_avx512_##name arguments                                                                    \
      : (isa) == TYN_ISA_AVX2 ? tyni_avx2_##name arguments                                                                      \
+     : (isa) == TYN_ISA_SSE2 ? tyni_sse2_##name arguments                                                                      \
+                             : tyni_scalar_##name arguments)
+#elif defined(TYNI_LANES_X86)
+#define TYNI_LANES_CALL(isa, name, arguments)                                                                                  \
+    ((isa) == TYN_ISA_AVX2   ? tyni_avx2_##name arguments                                                                      \
      : (isa) == TYN_ISA_SSE2 ? tyni_sse2_##name arguments                                                                      \
                              : tyni_scalar_##name arguments)
 #elif defined(TYNI_LANES_NEON)
