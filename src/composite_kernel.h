@@ -19,9 +19,9 @@ TYNI_V_INLINE void TYNI_V(composite_load)(tyn_format format, const uint8_t *p, i
         rgb[2] = v_gather(srgb, v_ior(v_shl(b5, 3), v_shr(b5, 2)));
     } else {
         const int32_t red = format == TYN_BGRA8_SRGB ? 2 : 0;
-        rgb[0] = v_gather_bytes(srgb, p + red, 4);
-        rgb[1] = v_gather_bytes(srgb, p + 1, 4);
-        rgb[2] = v_gather_bytes(srgb, p + 2 - red, 4);
+        rgb[0] = v_gather_bytes(srgb, p, red);
+        rgb[1] = v_gather_bytes(srgb, p, 1);
+        rgb[2] = v_gather_bytes(srgb, p, 2 - red);
     }
 }
 
@@ -38,18 +38,28 @@ static TYNI_V_TARGET void TYNI_V(composite_read)(tyn_format format, const uint8_
 }
 
 /* 0 .. 1 linear to 0 .. 1 encoded (IEC 61966-2-1), within 2e-6: the mantissa's power is a polynomial, the exponent's a table.
- */
-TYNI_V_INLINE v_float TYNI_V(composite_encode)(v_float x)
+ * The channels go term by term: each is one long chain, and one after the other they would be waited for. */
+TYNI_V_INLINE void TYNI_V(composite_encode)(v_float rgb[3])
 {
-    const v_int bits = v_bits(x);
-    const v_float m = v_from_bits(v_ior(v_iand(bits, v_iset(0x7fffff)), v_iset(0x3f800000)));
-    v_float p = 0.0051434881f * m - 0.0492275911f, curve;
-    p = p * m + 0.202089757f;
-    p = p * m - 0.482285205f;
-    p = p * m + 0.946032156f;
-    p = p * m + 0.378249163f;
-    curve = p * v_pick16(octave, v_iand(v_shr(bits, 23), v_iset(15))) - 0.055f;
-    return v_select(v_le(x, v_set(0.0031308f)), 12.92f * x, curve);
+    static const float term[4] = {0.202089757f, -0.482285205f, 0.946032156f, 0.378249163f};
+    v_float m[3], p[3];
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++) {
+        m[c] = v_from_bits(v_ior(v_iand(v_bits(rgb[c]), v_iset(0x7fffff)), v_iset(0x3f800000)));
+        p[c] = 0.0051434881f * m[c] - 0.0492275911f;
+    }
+    TYNI_UNROLL
+    for (int32_t i = 0; i < 4; i++) {
+        const v_float more = v_set(term[i]);
+        TYNI_UNROLL
+        for (int32_t c = 0; c < 3; c++)
+            p[c] = p[c] * m[c] + more;
+    }
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++) {
+        p[c] = p[c] * v_pick16(octave, v_iand(v_shr(v_bits(rgb[c]), 23), v_iset(15))) - 0.055f;
+        rgb[c] = v_select(v_le(rgb[c], v_set(0.0031308f)), 12.92f * rgb[c], p[c]);
+    }
 }
 
 TYNI_V_INLINE v_int TYNI_V(composite_level)(v_float encoded, float levels, v_float offset)
@@ -70,12 +80,12 @@ TYNI_V_INLINE void TYNI_V(composite_save)(tyn_format format, tyn_tone tone, uint
         v_store_rgb_n((float *)(void *)p, rgb[0], rgb[1], rgb[2], n);
         return;
     }
-    TYNI_UNROLL
-    for (int32_t c = 0; c < 3; c++) {
-        if (tone == TYN_TONE_FILM)
+    if (tone == TYN_TONE_FILM) {
+        TYNI_UNROLL
+        for (int32_t c = 0; c < 3; c++)
             rgb[c] = 1.0f - v_exp(-rgb[c]);
-        rgb[c] = TYNI_V(composite_encode)(rgb[c]);
     }
+    TYNI_V(composite_encode)(rgb);
     if (format == TYN_RGB565_SRGB) {
         const v_int r = TYNI_V(composite_level)(rgb[0], 31.0f, offset), g = TYNI_V(composite_level)(rgb[1], 63.0f, offset);
         const v_int b = TYNI_V(composite_level)(rgb[2], 31.0f, offset);

@@ -266,12 +266,11 @@ TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 {
     return _mm256_castsi256_ps(tyni_avx2_igather(base, _mm256_slli_epi32(index, 2)));
 }
-TYNI_AVX2_OP __m256 tyni_avx2_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+TYNI_AVX2_OP __m256 tyni_avx2_gather_bytes(const float *base, const uint8_t *p, int32_t k)
 {
-    const uint8_t *q = p + 4 * step;
-    const __m128 low = _mm_setr_ps(base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]);
+    const __m128 low = _mm_setr_ps(base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]);
     return _mm256_insertf128_ps(_mm256_castps128_ps256(low),
-                                _mm_setr_ps(base[q[0]], base[q[step]], base[q[2 * step]], base[q[3 * step]]), 1);
+                                _mm_setr_ps(base[p[16 + k]], base[p[20 + k]], base[p[24 + k]], base[p[28 + k]]), 1);
 }
 TYNI_AVX2_OP __m256i tyni_avx2_igather_where(const void *base, __m256i bytes, __m256i m)
 {

@@ -48,7 +48,8 @@
  *     ..._n(p, n), ..._n(p, x, n)        the first n lanes alone, any n: others load as 0, their memory is not touched
  *     v_store_where v_istore_where(p, m, x)    where m; elsewhere the old values may be written back: all must be writable
  *     v_gather(base, index)              floats base[index]; all lanes are read
- *     v_gather_bytes(base, p, step)      floats base[p[0]], base[p[step]] ...: what bytes stand for
+ *     v_gather_bytes(base, p, k)         floats base[p[k]], base[p[4 + k]] ...: what byte k, 0 .. 3, of each of v_n four-byte
+ *                                        pixels stands for. All 256 of base may be read
  *     v_pick(base, index)                floats base[index], 0 <= index < v_n; all of base[0 .. v_n - 1] may be read
  *     v_ipick(base, index)               32-bit words, likewise
  *     v_pick16(base, index)              the same of a table of 16, 0 <= index < 16

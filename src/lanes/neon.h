@@ -258,9 +258,9 @@ TYNI_NEON_OP float32x4_t tyni_neon_gather(const float *base, int32x4_t index)
         x[i] = base[at[i]];
     return vld1q_f32(x);
 }
-TYNI_NEON_OP float32x4_t tyni_neon_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+TYNI_NEON_OP float32x4_t tyni_neon_gather_bytes(const float *base, const uint8_t *p, int32_t k)
 {
-    const float x[4] = {base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]};
+    const float x[4] = {base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]};
     return tyni_neon_load(x);
 }
 TYNI_NEON_OP float32x4_t tyni_neon_pick(const float *base, int32x4_t index)

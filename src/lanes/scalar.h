@@ -232,10 +232,9 @@ TYNI_SCALAR_OP float tyni_scalar_gather(const float *base, int32_t index)
 {
     return base[index];
 }
-TYNI_SCALAR_OP float tyni_scalar_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+TYNI_SCALAR_OP float tyni_scalar_gather_bytes(const float *base, const uint8_t *p, int32_t k)
 {
-    (void)step;
-    return base[*p];
+    return base[p[k]];
 }
 TYNI_SCALAR_OP float tyni_scalar_pick(const float *base, int32_t index)
 {

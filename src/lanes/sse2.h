@@ -261,9 +261,9 @@ TYNI_SSE2_OP __m128 tyni_sse2_gather(const float *base, __m128i index)
     tyni_sse2_istore(at, index);
     return _mm_setr_ps(base[at[0]], base[at[1]], base[at[2]], base[at[3]]);
 }
-TYNI_SSE2_OP __m128 tyni_sse2_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+TYNI_SSE2_OP __m128 tyni_sse2_gather_bytes(const float *base, const uint8_t *p, int32_t k)
 {
-    return _mm_setr_ps(base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]);
+    return _mm_setr_ps(base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]);
 }
 TYNI_SSE2_OP __m128 tyni_sse2_pick(const float *base, __m128i index)
 {

@@ -251,9 +251,9 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather(const float *base, v128_t index)
         x[i] = base[at[i]];
     return tyni_wasm_load(x);
 }
-TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather_bytes(const float *base, const uint8_t *p, int32_t step)
+TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather_bytes(const float *base, const uint8_t *p, int32_t k)
 {
-    const float x[4] = {base[p[0]], base[p[step]], base[p[2 * step]], base[p[3 * step]]};
+    const float x[4] = {base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]};
     return tyni_wasm_load(x);
 }
 TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick(const float *base, v128_t index)
