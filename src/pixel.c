@@ -32,6 +32,7 @@ typedef struct run {
     uint32_t *rejected; /* bits */
     void *mill;
     tyn_stats *stats;
+    uint64_t now; /* when the run before this one was done */
 } run;
 
 /* Visibility from lines or from the grid; 0: nothing fits. `at`: depth relative to far. */
@@ -249,8 +250,8 @@ static void unwarp(const tyni_pass *p, run *r, tile *t)
         TYNI_LANES_CALL(isa, pixel_shade_local, (p, r));
 }
 
-/* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. */
-static void correct(const tyni_pass *p, const run *r)
+/* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. Returns how many. */
+static int32_t correct(const tyni_pass *p, const run *r)
 {
     int32_t steps = tyni_ray_way(p->context->config.rays, TYN_RAYS_STEPS) ? p->context->config.steps : 0, count = 0;
     /* where a line's samples are some pixels apart, so may the texels be */
@@ -274,6 +275,7 @@ static void correct(const tyni_pass *p, const run *r)
         r->stats->rays += count;
     else
         r->stats->rejected += count;
+    return count;
 }
 
 /* L = transmittance * colour + L_scat, into the target's format. */
@@ -318,7 +320,7 @@ static void draw_run(const tyni_pass *p, run *r, tile *t, float *sum)
     int dark = p->method == TYN_METHOD_NONE || tyni_debug_marks(p->frame->debug);
     const size_t bytes = sizeof **r->light * (size_t)r->count;
     uint64_t time[4];
-    time[0] = tyni_pass_now(p);
+    time[0] = r->now;
     r->shared = 0;
     for (int32_t c = 0; c < 3; c++) {
         if (p->first)
@@ -331,16 +333,15 @@ static void draw_run(const tyni_pass *p, run *r, tile *t, float *sum)
     if (!dark)
         unwarp(p, r, t);
     time[1] = tyni_pass_now(p);
-    if (!dark)
-        correct(p, r);
-    time[2] = tyni_pass_now(p);
+    /* clocks take as long as some pixels */
+    time[2] = !dark && correct(p, r) ? tyni_pass_now(p) : time[1];
     for (int32_t c = 0; c < 3 && !p->last; c++)
         memcpy(sum + c * r->count, r->light[c], bytes);
     if (p->last)
         finish(p, r);
     if (TYNI_HAS(TYN_PART_DEBUG) && p->frame->debug && p->frame->target.pixels)
         draw_debug(p, r, r->value);
-    time[3] = tyni_pass_now(p);
+    r->now = time[3] = tyni_pass_now(p);
     *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += time[1] - time[0];
     r->stats->correct_ns += time[2] - time[1];
     r->stats->composite_ns += time[3] - time[2];
@@ -373,6 +374,7 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
     r.rejected = s.fresh;
     r.mill = s.mill;
     r.stats = s.stats;
+    r.now = tyni_pass_now(p);
     /* a run in all rows before the next run: rows below one another read the same lines of memory */
     for (r.x = 0; r.x < p->view.width; r.x += r.count) {
         r.count = tyni_mini(most, p->view.width - r.x);

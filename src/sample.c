@@ -30,6 +30,13 @@ void tyni_sample_depths(float *depth, int32_t isa, const tyni_slice *slice, cons
     }
 }
 
+float tyni_sample_reach(const float *depth, int32_t isa, const tyni_slice *slice, const tyni_view *view)
+{
+    float reach = tyni_maxf(TYNI_LANES_CALL(isa, sample_reach, (depth, slice, view)), 0.0f);
+    reach -= tyni_vec_dot(slice->origin, slice->ex);
+    return reach + 1e-5f * tyni_absf(reach);
+}
+
 int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, int32_t first, int32_t last, float threshold)
 {
     int32_t count = 0, words = tyni_sample_words(last + 1);

@@ -24,6 +24,11 @@ static inline int tyni_sample_bit(const uint32_t *words, int32_t j)
  * before the first, as far back as breaks are looked for in whole words. */
 void tyni_sample_depths(float *depth, int32_t isa, const tyni_slice *slice, const tyni_view *view, const tyni_door *door);
 
+/* How far from the axis origin - light the rays of a line get: a ray's end is its depth times the point of the pixel plane
+ * (perspective) or beyond it (orthographic), and both are linear along the line. A hair more, since rays end elsewhere in
+ * floats. */
+float tyni_sample_reach(const float *depth, int32_t isa, const tyni_slice *slice, const tyni_view *view);
+
 /* Sets bit j where depth jumps between j and j + 1 by more than `threshold` of the nearer one; clears all others. Returns how
  * many. Samples off the screen are no part of first .. last, so the ends of a line need no breaks. */
 int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, int32_t first, int32_t last, float threshold);

@@ -26,6 +26,24 @@ static TYNI_V_TARGET void TYNI_V(sample_depths)(float *depth, const tyni_slice *
     }
 }
 
+/* The farthest along ex that a ray of the line ends. */
+static TYNI_V_TARGET float TYNI_V(sample_reach)(const float *depth, const tyni_slice *slice, const tyni_view *view)
+{
+    const float a = tyni_vec_dot(slice->a, slice->ex), b = tyni_vec_dot(slice->b, slice->ex);
+    const float ahead = tyni_vec_dot(view->forward, slice->ex);
+    const int flat = view->orthographic;
+    v_float most = v_set(-3e38f);
+    for (int32_t j = slice->first; j <= slice->last; j += v_n) {
+        /* lanes behind the last sample are the last again */
+        const v_int sample = v_imin(v_iadd(v_iset(j), v_index()), v_iset(slice->last));
+        const v_float x = a + b * (slice->p0 + v_to_float(sample) * slice->dp);
+        v_float s = v_load_n(depth + j, slice->last - j + 1);
+        s = v_select(v_first(slice->last - j + 1), s, v_set(depth[slice->last]));
+        most = v_max(flat ? x + s * ahead : x * s, most);
+    }
+    return v_hmax(most);
+}
+
 static TYNI_V_TARGET void TYNI_V(sample_breaks)(uint32_t *breaks, const float *depth, int32_t first, int32_t last,
                                                 float threshold)
 {

@@ -38,22 +38,6 @@ static int32_t clamp_to_volume(const tyni_pass *p, const tyni_slice *slice, floa
     return inside;
 }
 
-/* How far from the axis origin - light the rays of a line get: a ray's end is its depth times the point of the pixel plane
- * (perspective) or beyond it (orthographic), and both are linear along the line. A hair more, since rays end elsewhere in
- * floats. */
-static float reach_of(const tyni_pass *p, const tyni_slice *slice, const float *depth)
-{
-    const int flat = p->view.orthographic;
-    float a = tyni_vec_dot(slice->a, slice->ex), b = tyni_vec_dot(slice->b, slice->ex), reach = 0.0f;
-    float ahead = flat ? tyni_vec_dot(p->view.forward, slice->ex) : 0.0f;
-    for (int32_t j = slice->first; j <= slice->last; j++) {
-        float x = a + b * tyni_slice_p(slice, j);
-        reach = tyni_maxf(reach, flat ? x + depth[j] * ahead : x * depth[j]);
-    }
-    reach -= tyni_vec_dot(slice->origin, slice->ex);
-    return reach + 1e-5f * tyni_absf(reach);
-}
-
 /* One ray against the row; a walk over the map where its columns are too coarse. */
 static void row_value(const tyni_pass *p, const tyni_finder *finder, const tyni_sight *v, float s, float at, tyn_stats *stats,
                       float value[3])
@@ -185,7 +169,7 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     if (tyni_ray_way(config->rays, TYN_RAYS_STEPS) && !tyni_prefilter_method(p->method))
         return;
     tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,
-                   p->lamp, &p->view, reach_of(p, slice, s->depth));
+                   p->lamp, &p->view, tyni_sample_reach(s->depth, config->isa, slice, &p->view));
     s->stats->columns += s->row->columns;
     if (config->rays == TYN_RAYS_WORDS)
         tyni_row_bound(&s->blocks, config->isa, s->row);
