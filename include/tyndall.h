@@ -350,8 +350,8 @@ tyn_status tyn_shadow_fit_scene(tyn_light *light, const tyn_camera *camera, cons
  * none: a fitted map as the last of `more` closes that gap. Casters nearer to the light must be clamped to the near end when a
  * map is rendered (tyn_raster_shadow does). Sizes, if set, give margins. For the medium alone: surfaces want a map without
  * gaps.
- * TYN_E_NULL, TYN_E_CAMERA (also orthographic, and from and distance out of order), TYN_E_LIGHT (kind, direction, sizes; and
- * where tyn_shadow_rectifiable is 0), TYN_E_LIMIT (count). */
+ * TYN_E_NULL, TYN_E_CAMERA (also orthographic; from and distance out of order or next to equal), TYN_E_LIGHT (kind, direction,
+ * sizes; and where tyn_shadow_rectifiable is 0), TYN_E_LIMIT (count). */
 tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_light *light, const tyn_camera *camera,
                                     float from, float distance);
 

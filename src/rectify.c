@@ -73,17 +73,17 @@ static void row(float *m, tyni_vec3 axis, tyni_vec3 position)
 }
 
 /* The map of what lies between x = near and x = far. */
-static void map_of(tyn_shadow *shadow, const wedge *w, const tyn_camera *c, float near, float far)
+static void map_of(float matrix[16], const tyn_shadow *shadow, const wedge *w, const tyn_camera *c, float near, float far)
 {
     float width = shadow->size ? (float)shadow->size : 1e6f, height = shadow->height ? (float)shadow->height : width;
     float side = w->side / (1.0f - tyni_minf(2.0f * MARGIN / height, 0.5f));
     float rim = 0.01f * (w->high - w->low) + 1e-6f, deep = w->high - w->low + 2.0f * rim, scale = far / (far - near);
     tyni_vec3 position = tyni_vec_load(c->position);
-    row(shadow->matrix, tyni_vec_scale(w->x, scale), position);
-    shadow->matrix[3] -= near * scale;
-    row(shadow->matrix + 4, tyni_vec_mad(tyni_vec_scale(w->x, 0.5f), 0.5f / side, w->y), position);
-    row(shadow->matrix + 8, tyni_vec_scale(tyni_vec_mad(w->h, rim - w->low, w->x), 1.0f / deep), position);
-    row(shadow->matrix + 12, w->x, position);
+    row(matrix, tyni_vec_scale(w->x, scale), position);
+    matrix[3] -= near * scale;
+    row(matrix + 4, tyni_vec_mad(tyni_vec_scale(w->x, 0.5f), 0.5f / side, w->y), position);
+    row(matrix + 8, tyni_vec_scale(tyni_vec_mad(w->h, rim - w->low, w->x), 1.0f / deep), position);
+    row(matrix + 12, w->x, position);
 }
 
 static tyn_status check(const tyn_light *light, const tyn_camera *camera)
@@ -116,7 +116,7 @@ tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_l
                                     float from, float distance)
 {
     tyn_status status = check(light, camera);
-    float near, far, at, next, ratio;
+    float near, far, at, next, ratio, matrix[TYN_MAX_MAPS][16];
     wedge w;
     if (!maps)
         return TYN_E_NULL;
@@ -140,7 +140,12 @@ tyn_status tyn_shadow_fit_rectified(tyn_shadow *maps, int32_t count, const tyn_l
     for (int32_t i = 0; i < count; i++) {
         at = i ? near * tyni_num_exp(ratio * (float)i) : near;
         next = i + 1 < count ? near * tyni_num_exp(ratio * (float)(i + 1)) : far;
-        map_of(&maps[i], &w, camera, at, next);
+        map_of(matrix[i], &maps[i], &w, camera, at, next);
+        for (int32_t k = 0; k < 16; k++)
+            if (!tyni_finite(matrix[i][k])) /* nothing is between the two, or one is too far away for floats */
+                return TYN_E_CAMERA;
     }
+    for (int32_t i = 0; i < count; i++)
+        memcpy(maps[i].matrix, matrix[i], sizeof matrix[i]);
     return TYN_OK;
 }
