@@ -20,6 +20,8 @@ static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cour
     const int32_t along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
     const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
     const uint16_t one = 1;
+    /* of step 0, what lies before the row: its surface would be judged from behind the camera, where lit is dark */
+    v_float before = v_max(c->from - v_to_float(v_index()), v_set(0.0f));
     uint8_t low_first;
     memcpy(&low_first, &one, 1);
     for (int32_t k = 0; k < steps; k += v_n) {
@@ -33,14 +35,15 @@ static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cour
         v_float cut = v_set(1.0f);
         if (!v_all(same)) /* |slope| <= 1: they are neighbours */
             cut = v_select(same, cut, v_clamp((v_to_float(v_imax(a, b)) - from) / c->slope, v_set(0.0f), v_set(1.0f)));
-        ta = TYNI_V(row_column)(e, at + 0.5f * cut, TYNI_V(door_texels)(t, v_iadd(base, v_imul(a, v_iset(aside)))));
+        ta = TYNI_V(row_column)(e, at + 0.5f * (before + cut), TYNI_V(door_texels)(t, v_iadd(base, v_imul(a, v_iset(aside)))));
         tb = ta;
         if (!v_all(same))
-            tb = v_iselect(
-                same, ta,
-                TYNI_V(row_column)(e, at + 0.5f + 0.5f * cut, TYNI_V(door_texels)(t, v_iadd(base, v_imul(b, v_iset(aside))))));
+            tb = v_iselect(same, ta,
+                           TYNI_V(row_column)(e, at + 0.5f + 0.5f * v_max(before, cut),
+                                              TYNI_V(door_texels)(t, v_iadd(base, v_imul(b, v_iset(aside))))));
         v_store_n(split + k, cut, steps - k);
         v_istore_n(threshold + 2 * k, low_first ? v_ior(ta, v_shl(tb, 16)) : v_ior(tb, v_shl(ta, 16)), steps - k);
+        before = v_set(0.0f);
     }
 }
 

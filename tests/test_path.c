@@ -207,11 +207,50 @@ static void walk(stage *s, tyn_light_kind kind, const char *name, double most)
     CHECK_NEAR(change[0] / change[1], 1, 0.1);
 }
 
+/* A sun on the screen over a bare floor: all that one sees is lit. The texel that holds the camera may reach behind it, where
+ * its floor is on the other side of the rays; that must darken nothing. */
+static void bare(stage *s)
+{
+    const tyn_mesh all = s->mesh;
+    const float low[3] = {-20, 0, -20}, high[3] = {20, 3, 20};
+    tyn_medium haze = {{0.05f, 0.05f, 0.06f}, {0, 0, 0}, TYN_PHASE_HG, 0.4f};
+    tyn_light light = {.kind = TYN_LIGHT_DIRECTIONAL, .colour = {20, 20, 20}, .shadow = {.size = MAP}};
+    tyn_frame frame = {.camera = s->camera, .lights = &light, .light_count = 1, .media = &haze, .medium_count = 1};
+    double most = 0;
+    TEST("a sun on the screen over a bare floor");
+    s->mesh.indices += BOXES * 36;
+    s->mesh.triangles = 2;
+    see(s);
+    frame.depth = (tyn_image){s->depth, WIDTH, HEIGHT, 0, TYN_DEPTH_F32};
+    frame.scatter = (tyn_image){NULL, WIDTH, HEIGHT, 0, TYN_RGB_F32};
+    for (int f = 0; f < FRAMES; f++) {
+        double x = -0.4 + 0.8 * f / FRAMES, y = 0.1 + 0.3 * (f % 5) / 5, length = sqrt(x * x + y * y + 1), sum = 0;
+        light.direction[0] = (float)(-x / length);
+        light.direction[1] = (float)(-y / length);
+        light.direction[2] = (float)(1 / length);
+        light.shadow.depth = NULL;
+        CHECK(tyn_shadow_fit(&light, &s->camera, low, high) == TYN_OK);
+        CHECK(tyn_raster_shadow(s->raster, &light.shadow, s->map[0], &s->mesh, 1, NULL, NULL, NULL, NULL) == TYN_OK);
+        light.shadow.depth = s->map[0];
+        for (int i = 0; i < 2; i++) {
+            frame.scatter.pixels = s->light[0][i];
+            CHECK(tyn_render(s->context[i], &frame) == TYN_OK);
+        }
+        for (int i = 0; i < 3 * PIXELS; i++)
+            sum += (double)s->light[0][1][i];
+        most = fmax(most, distance(s->light[0][0], s->light[0][1]) / sum);
+    }
+    printf("  sun over a bare floor    relative L1 to the march at most %.5f\n", most);
+    CHECK(most < 0.0008);
+    s->mesh = all;
+}
+
 void test_path(void)
 {
     stage *s = stage_new();
     if (!s)
         return;
+    bare(s);
     see(s);
     walk(s, TYN_LIGHT_DIRECTIONAL, "path of a sun", 0.002);
     walk(s, TYN_LIGHT_SPOT, "path of a spot", 0.002);
