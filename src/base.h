@@ -41,7 +41,7 @@
 /* Before a loop of few and known rounds: all of them side by side. Vectors in an array would else go through memory. */
 #if defined(__clang__)
 #define TYNI_UNROLL _Pragma("clang loop unroll(full)")
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
 #define TYNI_UNROLL _Pragma("GCC unroll 4")
 #else
 #define TYNI_UNROLL
@@ -52,6 +52,13 @@
 #define TYNI_NOINLINE __attribute__((noinline))
 #else
 #define TYNI_NOINLINE
+#endif
+
+/* Of what must be part of its caller's loop. */
+#if defined(__GNUC__)
+#define TYNI_INLINE static inline __attribute__((always_inline))
+#else
+#define TYNI_INLINE static inline
 #endif
 
 /* Whether the build has a part, see TYN_LEAVE_OUT. */

@@ -6,7 +6,7 @@
 #include "lanes/lanes.h"
 
 /* sRGB decoding of a byte (IEC 61966-2-1). */
-static const float srgb[256] = {
+const float tyni_composite_srgb[256] = {
     0.0f,           0.000303526984f, 0.000607053967f, 0.000910580951f, 0.00121410793f,
     0.00151763492f, 0.0018211619f,   0.00212468888f,  0.00242821587f,  0.00273174285f,
     0.00303526984f, 0.00334653576f,  0.00367650732f,  0.00402471702f,  0.00439144204f,
@@ -83,6 +83,12 @@ static void dither_row(const tyn_display *display, int32_t y, float row[24])
 
 #define TYNI_KERNEL "composite_kernel.h"
 #include "lanes/each.h"
+
+void tyni_composite_dither(const tyn_display *display, int32_t y, uint32_t row[8])
+{
+    for (int32_t i = 0; i < 8; i++)
+        row[i] = display->dither ? 4u * bayer[(y & 7) * 8 + i] + 2u : 128u;
+}
 
 void tyni_composite_read(int32_t isa, const tyn_image *image, int32_t x, int32_t y, int32_t count, float *const rgb[3])
 {

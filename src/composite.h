@@ -6,6 +6,12 @@
 
 #define TYNI_COLOUR_FORMATS (1u << TYN_RGB_F32 | 1u << TYN_RGBA8_SRGB | 1u << TYN_BGRA8_SRGB | 1u << TYN_RGB565_SRGB)
 
+/* sRGB decoding of a byte. */
+extern const float tyni_composite_srgb[256];
+
+/* What is added to 1/256 of a step before it is cut off, in pixels x % 8 of a row. */
+void tyni_composite_dither(const tyn_display *display, int32_t y, uint32_t row[8]);
+
 /* `count` pixels from (x, y) on as planes of linear red, green and blue, finite and not negative; black for an image without
  * pixels. isa: of tyni_lanes_choose. */
 void tyni_composite_read(int32_t isa, const tyn_image *image, int32_t x, int32_t y, int32_t count, float *const rgb[3]);

@@ -14,14 +14,14 @@ TYNI_V_INLINE void TYNI_V(composite_load)(tyn_format format, const uint8_t *p, i
     } else if (format == TYN_RGB565_SRGB) {
         const v_int v = v_load_u16((const uint16_t *)(const void *)p), five = v_iset(31);
         const v_int r5 = v_shr(v, 11), g6 = v_iand(v_shr(v, 5), v_iset(63)), b5 = v_iand(v, five);
-        rgb[0] = v_gather(srgb, v_ior(v_shl(r5, 3), v_shr(r5, 2)));
-        rgb[1] = v_gather(srgb, v_ior(v_shl(g6, 2), v_shr(g6, 4)));
-        rgb[2] = v_gather(srgb, v_ior(v_shl(b5, 3), v_shr(b5, 2)));
+        rgb[0] = v_gather(tyni_composite_srgb, v_ior(v_shl(r5, 3), v_shr(r5, 2)));
+        rgb[1] = v_gather(tyni_composite_srgb, v_ior(v_shl(g6, 2), v_shr(g6, 4)));
+        rgb[2] = v_gather(tyni_composite_srgb, v_ior(v_shl(b5, 3), v_shr(b5, 2)));
     } else {
         const int32_t red = format == TYN_BGRA8_SRGB ? 2 : 0;
-        rgb[0] = v_gather_bytes(srgb, p, red);
-        rgb[1] = v_gather_bytes(srgb, p, 1);
-        rgb[2] = v_gather_bytes(srgb, p, 2 - red);
+        rgb[0] = v_gather_bytes(tyni_composite_srgb, p, red);
+        rgb[1] = v_gather_bytes(tyni_composite_srgb, p, 1);
+        rgb[2] = v_gather_bytes(tyni_composite_srgb, p, 2 - red);
     }
 }
 

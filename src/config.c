@@ -12,7 +12,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
                  {8, 512, 2, 32, 1024, 0.02f},
                  {1, 1024, 1, 96, 2048, 0.01f},
                  {1, 4096, 1, 192, 4096, 0.003f}};
-    int32_t longer = tyni_maxi(width, height);
+    const int32_t longer = tyni_maxi(width, height);
     if (!config)
         return TYN_E_NULL;
     if (width < 1 || height < 1 || width > TYN_MAX_SIZE || height > TYN_MAX_SIZE || (uint32_t)preset > TYN_PRESET_REFERENCE)
@@ -21,7 +21,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->width = width;
     config->height = height;
     config->slices = tyni_clampi(2 * (width + height) / table[preset].divisor, 16, table[preset].most);
-    config->samples = tyni_maxi((longer + table[preset].samples - 1) / table[preset].samples, 2);
+    config->samples = tyni_maxi((longer - 2 + table[preset].samples) / table[preset].samples + 1, 2);
     /* as many initial rays on a line whatever the size of the picture: what is between two of them looks the same */
     config->initial_step = 1;
     while (config->initial_step < 16 && 2 * config->initial_step * table[preset].rays <= config->samples)
@@ -38,6 +38,7 @@ tyn_status tyn_config_preset(tyn_config *config, tyn_preset preset, int32_t widt
     config->bases = 32;
     config->columns = 96;
     config->references = 4;
+    config->quads = TYNI_HAS(TYN_PART_QUADS) && preset == TYN_PRESET_HANDHELD;
     return TYN_OK;
 }
 
@@ -52,7 +53,8 @@ static int absent(const tyn_config *c)
     int prefiltered = c->method == TYN_METHOD_PREFILTERED || c->method == TYN_METHOD_HYBRID;
     int gathers = c->gather != TYN_GATHER_SHEAR || c->downscale > 1 || c->method == TYN_METHOD_SUBSAMPLE;
     return (!TYNI_HAS(TYN_PART_PREFILTERED) && prefiltered) || (!TYNI_HAS(TYN_PART_GATHERS) && gathers) ||
-           (!TYNI_HAS(TYN_PART_RAYS) && c->rays != TYN_RAYS_WORDS) || (!TYNI_HAS(TYN_PART_SLIDES) && c->textured);
+           (!TYNI_HAS(TYN_PART_RAYS) && c->rays != TYN_RAYS_WORDS) || (!TYNI_HAS(TYN_PART_SLIDES) && c->textured) ||
+           (!TYNI_HAS(TYN_PART_QUADS) && c->quads);
 }
 
 /* What prefiltered rows are made of. */

@@ -5,13 +5,15 @@
  *                              -> interpolation -> the finished line into memory
  *       grid jobs (trace.c):   only with downscale or sub-sampling: the points of a coarse picture, from the lines or by rays
  *       pixel jobs (pixel.c):  the two nearest lines (or four points) -> visibility -> light; rejected pixels by rays of their
- *                              own; after the last light transmittance, colour, exposure, tone, dither, format */
+ *                              own; after the last light transmittance, colour, exposure, tone, dither, format; quad.c has
+ * those of handhelds, four at a time */
 #include "frame.h"
 
 #include "art.h"
 #include "base.h"
 #include "chart.h"
 #include "pixel.h"
+#include "quad.h"
 #include "trace.h"
 
 /* White light: the channels of least and largest extinction, or one if they are equal; the third lies between them, well enough
@@ -62,6 +64,7 @@ static void begin_light(tyni_pass *p, const tyn_light *light)
              c->config.downscale > 1)
         tyni_trace_coarse(p);
     choose_channels(p);
+    p->quads = 0;
 }
 
 static tyn_status render_light(tyni_pass *p, const tyni_jobs *jobs, const tyn_light *light, tyn_stats *stats)
@@ -71,13 +74,17 @@ static tyn_status render_light(tyni_pass *p, const tyni_jobs *jobs, const tyn_li
     begin_light(p, light);
     if (tyni_prefilter_kept(p->method) || tyni_pass_sliced(p)) {
         tyni_trace_layout(p);
+        p->quads = tyni_quad_takes(p);
         status = tyni_jobs_run(jobs, tyni_prefilter_kept(p->method) ? tyni_trace_shelf : tyni_trace_slice, p, p->slices.count);
     }
     middle = tyni_pass_now(p);
     if (status == TYN_OK && tyni_pass_gridded(p))
         status = tyni_jobs_run(jobs, tyni_trace_grid, p, p->grid.rows);
+    if (TYNI_HAS(TYN_PART_QUADS) && p->quads)
+        tyni_quad_begin(p);
     if (status == TYN_OK)
-        status = tyni_jobs_run(jobs, tyni_pixel_band, p, (p->view.height + TYNI_PIXEL_BAND - 1) / TYNI_PIXEL_BAND);
+        status = tyni_jobs_run(jobs, TYNI_HAS(TYN_PART_QUADS) && p->quads ? tyni_quad_band : tyni_pixel_band, p,
+                               (p->view.height + TYNI_PIXEL_BAND - 1) / TYNI_PIXEL_BAND);
     if (TYNI_HAS(TYN_PART_DEBUG) && status == TYN_OK && (p->frame->debug == TYN_DEBUG_ROW || p->frame->debug == TYN_DEBUG_TREE))
         tyni_chart_draw(p);
     stats->slice_ns += middle - start;

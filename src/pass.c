@@ -162,7 +162,10 @@ void tyni_pass_store(const tyni_pass *p, const tyni_field *field, int32_t line, 
     int32_t count = tyni_maxi(p->count, 2), isa = p->context->config.isa;
     for (int32_t n = 0; n < count; n++) {
         float *scale = &field->scales[n][line];
-        TYNI_LANES_CALL(isa, pass_largest, (s->value[n], first, last, scale));
+        if (p->quads)
+            *scale = 1.0f;
+        else
+            TYNI_LANES_CALL(isa, pass_largest, (s->value[n], first, last, scale));
         inverse[n] = *scale > 1e-30f ? 1.0f / *scale : 0.0f;
     }
     TYNI_LANES_CALL(isa, pass_pack, (entries, s, first, last, inverse, 1.0f / p->view.far_depth));

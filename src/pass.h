@@ -56,6 +56,7 @@ typedef struct tyni_pass {
     int naive;            /* from the grid, pixels that nothing fits take what is nearest; else they get rays of their own */
     int32_t channels[3], count; /* the channels whose visibility is kept */
     int first, last;            /* of the lights */
+    int quads;                  /* quad.h has the pixels; lines have one scale */
 } tyni_pass;
 
 struct tyn_context {

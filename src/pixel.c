@@ -47,26 +47,6 @@ static int visible(const tyni_pass *p, float px, float py, float at, float value
     return p->naive;
 }
 
-/* Pixel x of the row on the shear grid: 0 left of the lines along y, 1 on them, 2 right of them. Rises along the row. */
-static int side_of(const tyni_slices *g, int32_t x, float dy)
-{
-    float dx = ((float)x + 0.5f) * g->ew - g->ex;
-    return tyni_absf(dy) > tyni_absf(dx) ? 1 : dx < 0.0f ? 0 : 2;
-}
-
-/* The first of the pixels x .. end - 1 that is not left of `side`; end if there is none. */
-static int32_t side_begin(const tyni_slices *g, int32_t x, int32_t end, float dy, int side)
-{
-    while (x < end) {
-        int32_t middle = x + (end - x) / 2;
-        if (side_of(g, middle, dy) < side)
-            x = middle + 1;
-        else
-            end = middle;
-    }
-    return x;
-}
-
 /* Entries of lines along y as rows of pixels want them: lines side by side, sample after sample. Of one run of pixels in one
  * band. */
 typedef struct tile {
@@ -173,20 +153,13 @@ static void unwarp_sector(const tyni_pass *p, const run *r, const tyni_sector *s
 /* The row's pixels in at most three parts, one for each sector that it crosses. */
 static void unwarp_shear(const tyni_pass *p, const run *r, tile *t)
 {
-    const tyni_slices *g = &p->slices;
-    float dy = ((float)r->y + 0.5f) * g->ew - g->ey;
-    int32_t x = r->x, end = r->x + r->count;
-    for (int side = 0; side < 3 && x < end; side++) {
-        int32_t next = side < 2 ? side_begin(g, x, end, dy, side + 1) : end;
-        const tyni_sector *s = &g->sectors[side == 1 ? 2 + (dy < 0.0f) : side == 0];
-        if (!s->count) /* the epipole's own pixel, or a corner lost to rounding: any will do, its samples are weighed */
-            for (s = g->sectors; !s->count && s < g->sectors + 3; s++)
-                ;
-        if (next > x && tyni_prefilter_kept(p->method))
+    const int32_t end = r->x + r->count;
+    for (int32_t x = r->x, next; x < end; x = next) {
+        const tyni_sector *s = tyni_slice_span(&p->slices, x, end, 1, (float)r->y + 0.5f, &next);
+        if (tyni_prefilter_kept(p->method))
             unwarp_rows(p, r, s, x - r->x, next - r->x);
-        else if (next > x)
+        else
             unwarp_sector(p, r, s, x - r->x, next - r->x, t);
-        x = next;
     }
 }
 

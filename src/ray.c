@@ -41,15 +41,22 @@ static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *n
         const int32_t w = i >> 6, behind = tyni_mini(64 * w + 64, last + 1);
         if (position < finder->blocks->low[w] || position >= finder->blocks->high[w])
             i = behind;
-        for (; i < behind; i++)
-            if ((position < threshold[i]) != lit) {
-                lit = !lit;
-                edges[n++ * stride] = (uint16_t)(i - first);
-                if (n == TYNI_RAY_EDGES) {
-                    *next = i - first + 1;
-                    return n;
-                }
+        for (;; i++) {
+            if (lit)
+                while (i < behind && position < threshold[i])
+                    i++;
+            else
+                while (i < behind && position >= threshold[i])
+                    i++;
+            if (i == behind)
+                break;
+            lit = !lit;
+            edges[n++ * stride] = (uint16_t)(i - first);
+            if (n == TYNI_RAY_EDGES) {
+                *next = i - first + 1;
+                return n;
             }
+        }
     }
     *next = end + 1;
     return n;
@@ -206,8 +213,9 @@ int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *it, const tyn
     return 1;
 }
 
-int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, const tyni_sight *v)
+int tyni_ray_coarse(const tyni_finder *finder, const tyni_integral *it, const tyni_sight *v)
 {
+    const tyni_row *row = finder->row;
     float from, to, texels = 0.0f, depth = it->sigma[it->count - 1] * (it->t1 - it->t0);
     if (row->count < 1)
         return 0;
@@ -217,7 +225,7 @@ int tyni_ray_coarse(const tyni_row *row, const tyni_integral *it, const tyni_sig
             texels += to - from;
     }
     /* a texel's share of the light, at most: 1 / texels in thin air, its optical depth in thick */
-    return tyni_maxf(1.0f, depth) > 0.05f * texels;
+    return tyni_maxf(1.0f, depth) > finder->coarse * texels;
 }
 
 /* ---- bundles -------------------------------------------------------------------------------------------------------- */
@@ -267,7 +275,7 @@ int32_t tyni_ray_bundle(tyni_bundle *b, const tyni_finder *finder, const tyni_sl
         const tyni_piece *piece = &row->pieces[i];
         if (row->count > 1)
             TYNI_LANES_CALL(isa, ray_spans, (b, view, piece, 0));
-        TYNI_LANES_CALL(isa, ray_enter, (b, piece, sigma[1]));
+        TYNI_LANES_CALL(isa, ray_enter, (b, piece, sigma[1], finder->coarse));
         do {
             if (finder->rays == TYN_RAYS_WORDS)
                 left = TYNI_LANES_CALL(isa, ray_fill, (b, finder, piece, outside, &looked));

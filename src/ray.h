@@ -26,6 +26,7 @@ typedef struct tyni_finder {
     tyn_rays rays;             /* not TYN_RAYS_STEPS */
     const tyni_blocks *blocks; /* of the row, for TYN_RAYS_WORDS */
     const tyni_tree *tree;     /* the same, for TYN_RAYS_TREE */
+    float coarse;              /* the largest share of a ray's light that a texel may have: see tyni_ray_coarse */
     tyni_sweep *sweep;         /* for TYN_RAYS_SWEEP: it stands at the ray's sample, or is sent there for a bundle */
 } tyni_finder;
 
@@ -35,7 +36,7 @@ int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, 
                      const tyni_sight *v, float *light);
 
 /* True where columns are so coarse for this ray that their thresholds would show (near the epipole): walk instead. */
-int tyni_ray_coarse(const tyni_row *row, const tyni_integral *integral, const tyni_sight *v);
+int tyni_ray_coarse(const tyni_finder *finder, const tyni_integral *integral, const tyni_sight *v);
 
 /* The columns first .. last of a piece that a ray crosses, and where it enters and leaves in step coordinates; 0 if none. */
 int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *integral, const tyni_sight *v, int32_t *first, int32_t *last,

@@ -185,19 +185,19 @@ static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_view *vie
 }
 
 /* tyni_ray_coarse of rays that cross any column. */
-TYNI_V_INLINE v_mask TYNI_V(ray_coarse_mask)(const tyni_bundle *b, int32_t i, float sigma)
+TYNI_V_INLINE v_mask TYNI_V(ray_coarse_mask)(const tyni_bundle *b, int32_t i, float sigma, float most)
 {
     const v_float texels = v_load(b->texels + i), share = v_max(v_set(1.0f), sigma * v_load(b->to + i));
-    return v_mand(v_gt(texels, v_set(0.0f)), v_gt(share, 0.05f * texels));
+    return v_mand(v_gt(texels, v_set(0.0f)), v_gt(share, most * texels));
 }
 
 /* columns_of each ray that crosses the piece and is not coarse; of others none. */
-static TYNI_V_TARGET void TYNI_V(ray_enter)(tyni_bundle *b, const tyni_piece *piece, float sigma)
+static TYNI_V_TARGET void TYNI_V(ray_enter)(tyni_bundle *b, const tyni_piece *piece, float sigma, float most)
 {
     const v_int one = v_iset(1), none = v_iset(0), final = v_iset(piece->steps - 1);
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
         const v_float from = v_load(b->from + i), until = v_load(b->until + i);
-        const v_mask coarse = TYNI_V(ray_coarse_mask)(b, i, sigma), crosses = v_mandnot(v_lt(from, until), coarse);
+        const v_mask coarse = TYNI_V(ray_coarse_mask)(b, i, sigma, most), crosses = v_mandnot(v_lt(from, until), coarse);
         const v_int k = v_imax(v_imin(v_trunc(from), final), none);
         const v_int l = v_imax(v_imin(v_isub(v_ceili(until), one), final), k);
         const v_mask second = v_ge(from - v_to_float(k), v_gather(piece->split, k));

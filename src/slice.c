@@ -206,3 +206,29 @@ const tyni_sector *tyni_slice_find(const tyni_slices *g, float x, float y, float
     *coordinate = tyni_clampf((k - s->first) / s->spacing, 0.0f, (float)(s->count - 1));
     return s;
 }
+
+/* Square n: 0 left of the lines along y, 1 on them, 2 right of them. Rises along the row. */
+static int side_of(const tyni_slices *g, int32_t n, float size, float dy)
+{
+    float dx = ((float)n + 0.5f) * size * g->ew - g->ex;
+    return tyni_absf(dy) > tyni_absf(dx) ? 1 : dx < 0.0f ? 0 : 2;
+}
+
+const tyni_sector *tyni_slice_span(const tyni_slices *g, int32_t first, int32_t end, int32_t size, float y, int32_t *next)
+{
+    const float dy = y * g->ew - g->ey, s = (float)size;
+    const int side = side_of(g, first, s, dy);
+    const tyni_sector *sector = &g->sectors[side == 1 ? 2 + (dy < 0.0f) : side == 0];
+    while (first < end) {
+        const int32_t middle = first + (end - first) / 2;
+        if (side_of(g, middle, s, dy) > side)
+            end = middle;
+        else
+            first = middle + 1;
+    }
+    *next = end;
+    if (!sector->count) /* the epipole's own pixel, or a corner lost to rounding: any will do, its samples are weighed */
+        for (sector = g->sectors; !sector->count && sector < g->sectors + 3; sector++)
+            ;
+    return sector;
+}

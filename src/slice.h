@@ -98,4 +98,8 @@ static inline float tyni_slice_p(const tyni_slice *slice, int32_t sample)
 /* Shear grid: the sector of a pixel, and its slice coordinate in it: 0 .. count - 1. */
 const tyni_sector *tyni_slice_find(const tyni_slices *slices, float x, float y, float *coordinate);
 
+/* Shear grid: of the squares first .. end - 1 of `size` pixels in a row whose middle is at y, the first one's sector, and the
+ * first square of another, or `end`. */
+const tyni_sector *tyni_slice_span(const tyni_slices *slices, int32_t first, int32_t end, int32_t size, float y, int32_t *next);
+
 #endif

@@ -48,7 +48,7 @@ static void row_value(const tyni_pass *p, const tyni_finder *finder, const tyni_
     if (!tyni_pass_range(p, v, s, &t0, &t1))
         return;
     tyni_integral_begin(&it, &p->medium, p->lamp, v, t0, t1, p->channels, p->count);
-    if (tyni_ray_coarse(finder->row, &it, v)) {
+    if (tyni_ray_coarse(finder, &it, v)) {
         tyni_walk_ray(p->context->config.isa, p->lamp, &it, v, 1, light);
         stats->walks++;
     } else {
@@ -166,6 +166,7 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     finder->blocks = &s->blocks;
     finder->tree = tree;
     finder->sweep = &s->sweep;
+    finder->coarse = p->quads ? 0.2f : 0.05f; /* where pixels are about right, so may rays be */
     if (tyni_ray_way(config->rays, TYN_RAYS_STEPS) && !tyni_prefilter_method(p->method))
         return;
     tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,

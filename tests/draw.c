@@ -76,6 +76,7 @@ drawn draw_one(void)
     d.config.samples = draw_one_of(2) ? 0 : 8 + (int32_t)draw_one_of(60);
     d.config.steps = 30;
     d.config.downscale = d.config.method == TYN_METHOD_PREFILTERED || draw_one_of(3) ? d.config.downscale : 1 << draw_one_of(4);
+    d.config.quads = (int32_t)draw_one_of(2);
     d.frame = rig_frame(d.r);
     d.count = 3 * (size_t)d.r->width * (size_t)d.r->height;
     return d;

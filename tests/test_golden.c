@@ -15,19 +15,21 @@ static const struct {
     tyn_method method;
     tyn_rays rays;
     tyn_preset preset;
-    int dither;
+    int dither, bytes; /* bytes: colours of 8 bits */
 } pictures[] = {
-    {"sun-ahead", "sun ahead", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
-    {"sun-ahead-march", "sun ahead", TYN_METHOD_MARCH, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
-    {"sun-left-handheld", "sun off the left", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_HANDHELD, 1},
-    {"sun-parallel-steps", "sun parallel to the picture", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, TYN_PRESET_BALANCED, 0},
-    {"lamp-in-view", "lamp in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
-    {"lamp-left-subsample", "lamp off the left", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
-    {"bulb-in-view", "bulb in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
-    {"sun-ahead-prefiltered", "sun ahead", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1},
-    {"lamp-view-prefiltered", "lamp in view", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0},
-    {"sun-left-hybrid", "sun off the left", TYN_METHOD_HYBRID, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 1},
-    {"lamp-above-reference", "lamp above", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_REFERENCE, 0},
+    {"sun-ahead", "sun ahead", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1, 0},
+    {"sun-ahead-march", "sun ahead", TYN_METHOD_MARCH, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1, 0},
+    {"sun-left-handheld", "sun off the left", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_HANDHELD, 1, 0},
+    {"sun-ahead-quads", "sun ahead", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_HANDHELD, 1, 1},
+    {"sun-left-quads", "sun off the left", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_HANDHELD, 0, 1},
+    {"sun-parallel-steps", "sun parallel to the picture", TYN_METHOD_EPIPOLAR, TYN_RAYS_STEPS, TYN_PRESET_BALANCED, 0, 0},
+    {"lamp-in-view", "lamp in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0, 0},
+    {"lamp-left-subsample", "lamp off the left", TYN_METHOD_SUBSAMPLE, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1, 0},
+    {"bulb-in-view", "bulb in view", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0, 0},
+    {"sun-ahead-prefiltered", "sun ahead", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 1, 0},
+    {"lamp-view-prefiltered", "lamp in view", TYN_METHOD_PREFILTERED, TYN_RAYS_WORDS, TYN_PRESET_QUALITY, 0, 0},
+    {"sun-left-hybrid", "sun off the left", TYN_METHOD_HYBRID, TYN_RAYS_WORDS, TYN_PRESET_BALANCED, 1, 0},
+    {"lamp-above-reference", "lamp above", TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS, TYN_PRESET_REFERENCE, 0, 0},
 };
 enum { PICTURES = (int)(sizeof pictures / sizeof *pictures) };
 
@@ -42,18 +44,26 @@ static rig *render(int i, golden *out)
     tyn_config config;
     tyn_frame frame = rig_frame(r);
     float *scatter = calloc(PIXELS, 3 * sizeof *scatter);
-    CHECK(scatter && tyn_config_preset(&config, pictures[i].preset, WIDTH, HEIGHT) == TYN_OK);
+    uint8_t *bytes = calloc(PIXELS, 4);
+    CHECK(scatter && bytes && tyn_config_preset(&config, pictures[i].preset, WIDTH, HEIGHT) == TYN_OK);
     config.method = pictures[i].method;
     config.rays = pictures[i].rays;
     rig_fill(r, &config);
     frame.scatter.pixels = scatter;
     frame.display.dither = pictures[i].dither;
+    if (pictures[i].bytes) {
+        const tyn_image linear = frame.colour;
+        frame.colour.pixels = bytes;
+        frame.colour.format = TYN_RGBA8_SRGB;
+        CHECK(tyn_encode(&linear, &frame.display, &frame.colour) == TYN_OK);
+    }
     CHECK(rig_render(r, &config, &frame) == TYN_OK);
     out->target = rig_hash(r->target, 4 * PIXELS);
     out->scatter = rig_hash_floats(scatter, 3 * PIXELS);
     out->raster = rig_hash_floats(r->colour, 3 * PIXELS) ^ 3 * rig_hash_floats(r->depth, PIXELS) ^
                   5 * rig_hash_floats(r->map[0], 256 * 256);
     free(scatter);
+    free(bytes);
     return r;
 }
 

@@ -141,7 +141,7 @@ static void test_finders(void)
         for (int k = 0; k < 12; k++) {
             int sample = b.slice.first + (int)(test_random() % (uint32_t)(b.slice.last - b.slice.first + 1));
             float p = tyni_slice_p(&b.slice, sample), truth[2], light[2];
-            tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_WORDS, &b.blocks, &b.tree, &b.sweep};
+            tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_WORDS, &b.blocks, &b.tree, 0.05f, &b.sweep};
             tyni_integral it;
             tyni_sight v;
             random_ray(&b, &v, &it);
@@ -253,7 +253,7 @@ static void test_tree_work(void)
     int64_t nodes = 0, columns = 0;
     TEST("the tree's work");
     for (int n = 0; n < 500; n++) {
-        tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_TREE, &b.blocks, &b.tree, &b.sweep};
+        tyni_finder f = {&b.row, TYN_ISA_SCALAR, TYN_RAYS_TREE, &b.blocks, &b.tree, 0.05f, &b.sweep};
         tyni_integral it;
         tyni_sight v;
         float light[2];

@@ -16,7 +16,7 @@
     (SHOW_ROUND(sizeof(scene)) + SHOW_ROUND(4 * SHOW_MAP * SHOW_MAP) + SHOW_ROUND(2 * (size_t)(width) * (height)) +            \
      SHOW_ROUND(16 * (size_t)(width)*SHOW_BAND) +                                                                              \
      TYN_RASTER_MEMORY(SHOW_MOST(width, SHOW_MAP), SHOW_MAP, SHOW_BATCH, workers) +                                            \
-     TYN_MEMORY(width, height, SHOW_SLICES(width, height), (SHOW_MOST(width, height) + 1) / 2, SHOW_MAP, 1, workers))
+     TYN_MEMORY(width, height, SHOW_SLICES(width, height), SHOW_MOST(width, height) / 2 + 1, SHOW_MAP, 1, workers))
 #define SHOW_SLICES(width, height) SHOW_MOST(SHOW_LEAST(((width) + (height)) / 8, 256), 16)
 #define SHOW_MOST(a, b) ((a) > (b) ? (a) : (b))
 #define SHOW_LEAST(a, b) ((a) < (b) ? (a) : (b))
