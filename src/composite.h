@@ -9,6 +9,9 @@
 /* sRGB decoding of a byte. */
 extern const float tyni_composite_srgb[256];
 
+/* 256 times the encoded level, 0 .. 255, by 1023 times the root of a linear value. */
+extern const uint16_t tyni_composite_curve[1024];
+
 /* What is added to 1/256 of a step before it is cut off, in pixels x % 8 of a row. */
 void tyni_composite_dither(const tyn_display *display, int32_t y, uint32_t row[8]);
 
