@@ -278,10 +278,14 @@ TYNI_AVX512_OP __m512i tyni_avx512_ipick(const void *base, __m512i index)
 {
     return _mm512_permutexvar_epi32(index, _mm512_loadu_si512(base));
 }
+/* Without an optimiser it is a macro, whose conversions are the compiler's own. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"
 TYNI_AVX512_OP __m512i tyni_avx512_igather_where(const void *base, __m512i bytes, __mmask16 m)
 {
     return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), m, bytes, base, 1);
 }
+#pragma GCC diagnostic pop
 TYNI_AVX512_OP void tyni_avx512_store_rgb(float *p, __m512 r, __m512 g, __m512 b)
 {
     const __m512i rg0 = _mm512_setr_epi32(0, 16, 0, 1, 17, 1, 2, 18, 2, 3, 19, 3, 4, 20, 4, 5);
