@@ -125,7 +125,7 @@ static int32_t span_of(const tyni_pass *p)
     return span;
 }
 
-static void begin(quads *q, const tyni_pass *p, const tyni_scratch *s)
+static void set_up(quads *q, const tyni_pass *p, const tyni_scratch *s)
 {
     const tyn_frame *f = p->frame;
     memset(q, 0, sizeof *q);
@@ -549,7 +549,7 @@ void tyni_quad_band(void *argument, int32_t index, int32_t worker)
     tyni_scratch s;
     quads q;
     tyni_pass_scratch(p->context, worker, &s);
-    begin(&q, p, &s);
+    set_up(&q, p, &s);
     for (q.y = index * TYNI_PIXEL_BAND; q.y < end; q.y += 2) {
         const int32_t rows = tyni_mini(end - q.y, 2);
         for (int32_t i = 0; i < rows; i++)
