@@ -29,7 +29,7 @@ TEST_SRC := $(filter-out tests/fence.c tests/fuzz_%.c tests/test_%.c,$(wildcard 
 OBJ = $(patsubst %.c,$(B)/obj/%.o,$(1))
 C_FILES = $(wildcard include/*.h src/*.[ch] src/*/*.[ch] ports/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-.PHONY: all run test check-all bench bench-raster bench-prefiltered size golden fuzz install uninstall single format format-check clean help FORCE
+.PHONY: all run test check-all bench bench-raster bench-prefiltered stability size golden fuzz install uninstall single format format-check clean help FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -57,6 +57,12 @@ bench-raster: $(B)/bench-raster
 bench-prefiltered: $(B)/bench-prefiltered
 	@mkdir -p $(B)/prefiltered
 	$(B)/bench-prefiltered $(B)/prefiltered
+
+# Tables on stdout and, with the worst frames, in build/stability; plots of them where there is gnuplot.
+stability: $(B)/bench-stability
+	@mkdir -p $(B)/stability
+	$(B)/bench-stability $(B)/stability
+	@if command -v gnuplot >/dev/null; then gnuplot -e "folder='$(B)/stability'" tests/bench/stability.gp; else echo 'SKIPPED: plots, no gnuplot'; fi
 
 # Text, data, bss and stack by configuration and part.
 size:
@@ -100,7 +106,7 @@ $(B)/fuzzer: $(call OBJ,tests/fuzz_main.c tests/fuzz.c tests/files.c $(FUZZ_SRC)
 $(B)/bench: $(call OBJ,tests/bench/bench.c) $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
-$(addprefix $(B)/bench-,frame growth papers): $(B)/bench-%: $(B)/obj/tests/bench/%.o $(B)/libport.a $(B)/libtyndall.a
+$(addprefix $(B)/bench-,frame growth papers stability): $(B)/bench-%: $(B)/obj/tests/bench/%.o $(B)/libport.a $(B)/libtyndall.a
 	$(CC) $(CFLAGS) $(THREADS) -o $@ $^ -lm
 
 $(B)/bench-raster: tests/bench/raster.c tests/bench/llvmpipe.c tests/bench/raster.h $(B)/libport.a $(B)/libtyndall.a
@@ -174,6 +180,7 @@ help:
 	@echo 'make bench      times against a plain pass over the pixels'
 	@echo 'make bench-raster  the rasterizer, every ISA, and against llvmpipe where EGL and GL are installed'
 	@echo 'make bench-prefiltered  tables and pictures of prefiltered rows'
+	@echo 'make stability  a creeping camera and a light at every place against the march: tables, plots, the worst frames; 45 minutes'
 	@echo 'make size       text, data, bss and stack of the library and its parts'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
 	@echo 'make fuzz       a minute of each fuzz target; SECONDS=, TARGETS=, FUZZER=afl'

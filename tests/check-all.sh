@@ -50,7 +50,8 @@ check_format() {
 check_compilers() {
     quiet 'builds' "$MAKE" -s -j2 B="$B/main" CC=gcc all && part env B="$B/main" CC=gcc CFLAGS=-O2 MAKE="$MAKE" sh tests/proofs_install.sh
     quiet 'benchmarks build' "$MAKE" -s -j2 B="$B/bench" CC=gcc "$B/bench/bench" "$B/bench/bench-frame" \
-        "$B/bench/bench-growth" "$B/bench/bench-papers" "$B/bench/bench-prefiltered"
+        "$B/bench/bench-growth" "$B/bench/bench-papers" "$B/bench/bench-prefiltered" \
+        "$B/bench/bench-stability"
     if have clang; then
         if quiet 'clang: builds' "$MAKE" -s -j2 B="$B/clang" CC=clang all "$B/clang/tests"; then
             part env B="$B/clang" CC=clang CFLAGS=-O2 MAKE="$MAKE" sh tests/run.sh

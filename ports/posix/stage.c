@@ -51,17 +51,52 @@ double bench_ms_since(uint64_t start)
     return (double)(bench_now(NULL) - start) * 1e-6;
 }
 
+void stage_shadow(stage *s, pool *threads)
+{
+    float low[3], high[3];
+    uint64_t start = bench_now(NULL);
+    scene_bounds(&s->scene, low, high);
+    bench_need(tyn_shadow_fit(&s->light, &s->camera, low, high), "tyn_shadow_fit");
+    bench_need(tyn_raster_shadow(s->raster, &s->light.shadow, s->map, s->scene.meshes, s->scene.mesh_count,
+                                 pool_executor(threads), NULL, NULL, NULL),
+               "tyn_raster_shadow");
+    s->shadow_ms = bench_ms_since(start);
+    s->light.shadow.depth = s->map;
+}
+
+void stage_surface(stage *s, pool *threads)
+{
+    tyn_display display = {1, TYN_TONE_CLAMP, 0};
+    tyn_surface surface;
+    tyn_image bytes8;
+    uint64_t start = bench_now(NULL);
+    memset(&surface, 0, sizeof surface);
+    surface.camera = s->camera;
+    surface.meshes = s->scene.meshes;
+    surface.mesh_count = s->scene.mesh_count;
+    surface.lights = &s->light;
+    surface.light_count = 1;
+    memcpy(surface.ambient, s->scene.ambient, sizeof surface.ambient);
+    memcpy(surface.background, s->scene.background, sizeof surface.background);
+    surface.colour.pixels = s->colour;
+    surface.depth.pixels = s->depth;
+    surface.colour.width = surface.depth.width = s->width;
+    surface.colour.height = surface.depth.height = s->height;
+    surface.colour.format = TYN_RGB_F32;
+    surface.depth.format = TYN_DEPTH_F32;
+    surface.executor = pool_executor(threads);
+    bench_need(tyn_raster_surface(s->raster, &surface), "tyn_raster_surface");
+    s->raster_ms = bench_ms_since(start);
+    bytes8 = surface.colour;
+    bytes8.pixels = s->colour8;
+    bytes8.format = TYN_RGBA8_SRGB;
+    bench_need(tyn_encode(&surface.colour, &display, &bytes8), "tyn_encode");
+}
+
 void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int32_t shadow_size, pool *threads)
 {
     tyn_raster_config config = {0};
-    tyn_surface surface;
-    tyn_raster *raster;
-    tyn_display display = {1, TYN_TONE_CLAMP, 0};
-    tyn_image linear, bytes8;
-    float low[3], high[3];
     size_t bytes;
-    void *block;
-    uint64_t start;
     memset(s, 0, sizeof *s);
     s->width = width;
     s->height = height;
@@ -82,43 +117,13 @@ void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int
     config.height = s->height > shadow_size ? s->height : shadow_size;
     config.workers = pool_executor(threads)->workers;
     bench_need(tyn_raster_measure(&config, &bytes), "tyn_raster_measure");
-    block = block_of(bytes);
-    bench_need(tyn_raster_init(&raster, &config, block, bytes), "tyn_raster_init");
+    s->raster_memory = block_of(bytes);
+    bench_need(tyn_raster_init(&s->raster, &config, s->raster_memory, bytes), "tyn_raster_init");
     bench_need(scene_camera_make(&s->scene, s->width, s->height, &s->camera), "camera");
     s->light = s->scene.lights[0].light;
-    scene_bounds(&s->scene, low, high);
-    bench_need(tyn_shadow_fit(&s->light, &s->camera, low, high), "tyn_shadow_fit");
     s->light.shadow.size = shadow_size;
-    start = bench_now(NULL);
-    bench_need(tyn_raster_shadow(raster, &s->light.shadow, s->map, s->scene.meshes, s->scene.mesh_count, pool_executor(threads),
-                                 NULL, NULL, NULL),
-               "tyn_raster_shadow");
-    s->shadow_ms = bench_ms_since(start);
-    s->light.shadow.depth = s->map;
-    memset(&surface, 0, sizeof surface);
-    surface.camera = s->camera;
-    surface.meshes = s->scene.meshes;
-    surface.mesh_count = s->scene.mesh_count;
-    surface.lights = &s->light;
-    surface.light_count = 1;
-    memcpy(surface.ambient, s->scene.ambient, sizeof surface.ambient);
-    memcpy(surface.background, s->scene.background, sizeof surface.background);
-    surface.colour.pixels = s->colour;
-    surface.depth.pixels = s->depth;
-    surface.colour.width = surface.depth.width = s->width;
-    surface.colour.height = surface.depth.height = s->height;
-    surface.colour.format = TYN_RGB_F32;
-    surface.depth.format = TYN_DEPTH_F32;
-    surface.executor = pool_executor(threads);
-    start = bench_now(NULL);
-    bench_need(tyn_raster_surface(raster, &surface), "tyn_raster_surface");
-    s->raster_ms = bench_ms_since(start);
-    linear = surface.colour;
-    bytes8 = linear;
-    bytes8.pixels = s->colour8;
-    bytes8.format = TYN_RGBA8_SRGB;
-    bench_need(tyn_encode(&linear, &display, &bytes8), "tyn_encode");
-    free(block);
+    stage_shadow(s, threads);
+    stage_surface(s, threads);
 }
 
 void stage_tear_down(stage *s)
@@ -131,6 +136,7 @@ void stage_tear_down(stage *s)
     free(s->truth);
     free(s->scatter);
     free(s->truth_scatter);
+    free(s->raster_memory);
     scene_free(&s->scene);
 }
 

@@ -17,7 +17,9 @@ typedef struct stage {
     float *map, *depth, *colour;
     float *scatter, *truth_scatter; /* 3 a pixel; scatter is of the last frame that wanted it */
     uint8_t *colour8, *target, *truth;
-    double raster_ms, shadow_ms;
+    tyn_raster *raster;
+    void *raster_memory;
+    double raster_ms, shadow_ms; /* of the last */
 } stage;
 
 /* The least of all repeats. */
@@ -36,6 +38,10 @@ double bench_ms_since(uint64_t start);
 /* Draws a built-in scene; ends the program where it can't. */
 void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int32_t shadow_size, pool *threads);
 void stage_tear_down(stage *s);
+
+/* Draws anew, after s->light or s->camera was changed: the shadow map, fitted; depth and colour, by the map as it is. */
+void stage_shadow(stage *s, pool *threads);
+void stage_surface(stage *s, pool *threads);
 
 /* The quality preset for the stage. */
 tyn_config stage_config(const stage *s, int32_t workers);
