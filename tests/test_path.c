@@ -245,12 +245,47 @@ static void bare(stage *s)
     s->mesh = all;
 }
 
+/* The camera turns by quarter pixels: what flickers changes by more than the march does. */
+static void creep(stage *s)
+{
+    const tyn_camera still = s->camera;
+    tyn_medium haze = {{0.05f, 0.05f, 0.06f}, {0, 0, 0}, TYN_PHASE_HG, 0.4f};
+    tyn_light light = {.kind = TYN_LIGHT_DIRECTIONAL, .colour = {20, 20, 20}};
+    tyn_shadow faces[FACES];
+    tyn_frame frame = {.lights = &light, .light_count = 1, .media = &haze, .medium_count = 1};
+    double change[2] = {0, 0};
+    TEST("a camera that turns by quarter pixels");
+    memset(faces, 0, sizeof faces);
+    place(s, &light, faces, 1);
+    shine(s, &light, faces);
+    frame.depth = (tyn_image){s->depth, WIDTH, HEIGHT, 0, TYN_DEPTH_F32};
+    for (int f = 0; f < FRAMES; f++) {
+        float turn = 0.25f * (float)f * (still.right_edge - still.left_edge) / WIDTH;
+        for (int k = 0; k < 3; k++) {
+            s->camera.forward[k] = cosf(turn) * still.forward[k] + sinf(turn) * still.right[k];
+            s->camera.right[k] = cosf(turn) * still.right[k] - sinf(turn) * still.forward[k];
+        }
+        see(s);
+        frame.camera = s->camera;
+        for (int i = 0; i < 2; i++) {
+            frame.scatter = (tyn_image){s->light[i][f & 1], WIDTH, HEIGHT, 0, TYN_RGB_F32};
+            CHECK(tyn_render(s->context[i], &frame) == TYN_OK);
+            if (f > 0)
+                change[i] += distance(s->light[i][f & 1], s->light[i][~f & 1]);
+        }
+    }
+    printf("  camera by quarter pixels change per frame %.4f of the march's\n", change[0] / change[1]);
+    CHECK(change[0] <= 1.1 * change[1]);
+    s->camera = still;
+}
+
 void test_path(void)
 {
     stage *s = stage_new();
     if (!s)
         return;
     bare(s);
+    creep(s);
     see(s);
     walk(s, TYN_LIGHT_DIRECTIONAL, "path of a sun", 0.002);
     walk(s, TYN_LIGHT_SPOT, "path of a spot", 0.002);

@@ -52,9 +52,8 @@ do for [name in files('map')] {
     set palette rgbformulae 33,13,10
     unset key
     do for [i in '3 4 5 6 7 9 10 11 12 13'] {
-        stats at(name) using int(i) every ::1 nooutput
         set title sprintf('%s, %s', system(sprintf("head -n 1 %s | cut -d, -f%s", at(name), i)), i > 7 ? '/255' : '%')
-        plot at(name) using 1:2:int(i) with image
+        plot at(name) using 1:2:int(i) with points pointtype 5 pointsize 1.4 palette
     }
     unset object 1
     unset object 2
