@@ -46,7 +46,7 @@ static int unknown(int argc, char **argv, int count)
 int main(int argc, char **argv)
 {
     const char *given = getenv("TYN_SEED");
-    unsigned long seed = given ? strtoul(given, NULL, 0) : (unsigned long)time(NULL);
+    unsigned long seed = given ? strtoul(given, NULL, 0) : 1;
     const int count = (int)(sizeof rooms / sizeof *rooms);
     int passed = 0, failed = 0;
     printf("seed %lu (TYN_SEED)\n", seed & 0xffffffffu);

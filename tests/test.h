@@ -11,7 +11,8 @@ void test_begin(const char *name);
 void test_check(int passed, const char *file, int line, const char *text);
 void test_skip(const char *why); /* prints SKIPPED and the reason; the test counts as neither */
 
-/* Reproducible random numbers; the seed is printed and can be given as TYN_SEED in the environment. */
+/* Reproducible random numbers: the same at every run, as a check that fails one day in ten proves nothing on the other nine.
+ * Their seed is printed; TYN_SEED in the environment is another one, to hunt with. */
 uint32_t test_random(void);
 float test_random_float(float low, float high);
 
