@@ -3,6 +3,7 @@
 
 #include "art.h"
 #include "base.h"
+#include "check.h"
 #include "composite.h"
 #include "entry.h"
 #include "debug.h"
@@ -21,6 +22,10 @@
 typedef struct run {
     int32_t x, y, count;
     const float *depth; /* as in the depth image */
+    /* of the images what is read next: depth of the row below, and of this one colour and target. Bytes of a pixel; 0: no image
+     */
+    const uint8_t *ahead[3];
+    int32_t ahead_bytes[3];
     float *nearness;    /* a length along the ray times this is a depth relative to far */
     float *reach;       /* metres to where the ray ends: the surface, or the frame's max_distance; 0: no ray */
     float *cosine;      /* of the ray and the way to the light: directional lights */
@@ -320,6 +325,22 @@ static void draw_run(const tyni_pass *p, run *r, tile *t, float *sum)
     r->stats->composite_ns += time[3] - time[2];
 }
 
+static void look_ahead(const tyni_pass *p, run *r, int32_t end)
+{
+    const tyn_image *image[3];
+    int32_t y[3];
+    image[0] = p->depth.image;
+    image[1] = &p->frame->colour;
+    image[2] = &p->frame->target;
+    y[0] = tyni_mini(r->y + 1, end - 1);
+    y[1] = y[2] = r->y;
+    for (int32_t i = 0; i < 3; i++) {
+        r->ahead_bytes[i] = image[i]->pixels ? tyn_format_bytes(image[i]->format) : 0;
+        r->ahead[i] = image[i]->pixels ? tyni_image_row(image[i], y[i]) : (const void *)r->depth;
+        r->ahead[i] += (ptrdiff_t)r->x * r->ahead_bytes[i];
+    }
+}
+
 void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
 {
     const tyni_pass *p = argument;
@@ -355,6 +376,7 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
         for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++) {
             float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r.y * p->view.width + r.x) * 3 : NULL;
             r.depth = tyni_door_row(&p->depth, r.x, r.y, r.count, s.depth);
+            look_ahead(p, &r, end);
             draw_run(p, &r, &t, sum);
         }
     }

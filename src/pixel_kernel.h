@@ -20,6 +20,9 @@ static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const run *r)
         reach = v_max(v_min(depth, v_set(far)), v_set(0.0f)) * length; /* NaN: far */
         if (most > 0.0f)
             reach = v_min(v_set(most), reach);
+        TYNI_UNROLL
+        for (int32_t j = 0; j < 3 && v_n > 1; j++) /* images are beyond the nearest caches, and runs too short to be foreseen */
+            TYNI_PREFETCH(r->ahead[j] + (ptrdiff_t)r->ahead_bytes[j] * i);
         v_store(r->nearness + i, inverse * (1.0f / far));
         v_store(r->reach + i, reach);
         v_store(r->cosine + i, v_max(v_min((x * to.x + y * to.y + z * to.z) * inverse, v_set(1.0f)), v_set(-1.0f)));

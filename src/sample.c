@@ -7,6 +7,16 @@
 /* Pixels are read at offsets of 32 bits from the first of 16 samples; farther apart than this they are read one by one. */
 #define FAR_APART (1 << 30)
 
+/* The set bit before j; `first` if there is none. */
+static int32_t previous(const uint32_t *words, int32_t j, int32_t first)
+{
+    int32_t w = j >> 5;
+    uint32_t bits = words[w] & ((1u << (j & 31)) - 1u);
+    while (!bits && w > first >> 5)
+        bits = words[--w];
+    return bits ? w * 32 + 31 - tyni_clz32(bits) : first;
+}
+
 #define TYNI_KERNEL "sample_kernel.h"
 #include "lanes/each.h"
 
@@ -90,16 +100,6 @@ int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last)
     return tyni_mini(w * 32 + tyni_ctz32(bits), last + 1);
 }
 
-/* The set bit before j; `first` if there is none. */
-static int32_t previous(const uint32_t *words, int32_t j, int32_t first)
-{
-    int32_t w = j >> 5;
-    uint32_t bits = words[w] & ((1u << (j & 31)) - 1u);
-    while (!bits && w > first >> 5)
-        bits = words[--w];
-    return bits ? w * 32 + 31 - tyni_clz32(bits) : first;
-}
-
 /* b lies off the line through a and c. No branch on the sign: nobody can foretell it. */
 static int bent(float *const value[3], int32_t values, int32_t a, int32_t b, int32_t c, float tolerance)
 {
@@ -169,7 +169,8 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
     return count;
 }
 
-void tyni_sample_interpolate(float *value, int32_t isa, const uint32_t *rays, int32_t first, int32_t last)
+void tyni_sample_interpolate(float *const value[3], int32_t values, int32_t isa, const uint32_t *rays, int32_t first,
+                             int32_t last)
 {
-    TYNI_LANES_CALL(isa, sample_interpolate, (value, rays, first, last));
+    TYNI_LANES_CALL(isa, sample_interpolate, (value, values, rays, first, last));
 }

@@ -49,6 +49,7 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
 
 /* Fills the samples between ray samples by linear interpolation of their sources, which are the ray samples on either side: a
  * break has rays on both sides, so that no pair of sources ever spans one. */
-void tyni_sample_interpolate(float *value, int32_t isa, const uint32_t *rays, int32_t first, int32_t last);
+void tyni_sample_interpolate(float *const value[3], int32_t count, int32_t isa, const uint32_t *rays, int32_t first,
+                             int32_t last);
 
 #endif

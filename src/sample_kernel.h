@@ -65,18 +65,19 @@ static TYNI_V_TARGET void TYNI_V(sample_breaks)(uint32_t *breaks, const float *d
     }
 }
 
-static TYNI_V_TARGET void TYNI_V(sample_interpolate)(float *value, const uint32_t *rays, int32_t first, int32_t last)
+/* From the last to the first: what is read next then lies before what was written, and no load waits for a store that covers it
+ * with lanes that it leaves alone. */
+static TYNI_V_TARGET void TYNI_V(sample_interpolate)(float *const value[3], int32_t values, const uint32_t *rays, int32_t first,
+                                                     int32_t last)
 {
     const v_float one = v_to_float(v_index()) + 1.0f;
-    int32_t a = first;
-    while (a < last) {
-        const int32_t b = tyni_sample_next(rays, a + 1, last);
-        const float from = value[a];
-        if (b - a > 1) {
-            const float step = (value[b] - from) / (float)(b - a);
+    for (int32_t b = last, a; b > first; b = a) {
+        a = previous(rays, b, first);
+        for (int32_t i = 0; i < values && b - a > 1; i++) {
+            float *v = value[i];
+            const float from = v[a], step = (v[b] - from) / (float)(b - a);
             for (int32_t j = a + 1; j < b; j += v_n)
-                v_store_n(value + j, from + step * (one + (float)(j - a - 1)), b - j);
+                v_store_n(v + j, from + step * (one + (float)(j - a - 1)), b - j);
         }
-        a = b;
     }
 }

@@ -180,12 +180,6 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
         tyni_sweep_begin(&s->sweep, s->row, slice);
 }
 
-static void interpolate(const tyni_pass *p, const tyni_slice *slice, const tyni_scratch *s)
-{
-    for (int32_t n = 0; n < tyni_maxi(p->count, 2); n++)
-        tyni_sample_interpolate(s->value[n], p->context->config.isa, s->rays, slice->first, slice->last);
-}
-
 /* Depth, breaks, initial rays; 0 if there is nothing to do. */
 static int32_t sample_line(const tyni_pass *p, tyni_slice *slice, int32_t index, tyni_scratch *s)
 {
@@ -275,7 +269,7 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     if (tyni_debug_marks(p->frame->debug)) {
         tyni_debug_mark_sources(p, index, &slice, s.rays);
     } else {
-        interpolate(p, &slice, &s);
+        tyni_sample_interpolate(s.value, tyni_maxi(p->count, 2), config->isa, s.rays, slice.first, slice.last);
         tyni_pass_store(p, &p->lines, index, slice.first, slice.last, &s);
     }
     time[4] = tyni_pass_now(p);

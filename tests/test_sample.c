@@ -141,7 +141,7 @@ static void test_dense(void)
 /* Between sources a line, on them what they are; a source never reaches over a break. */
 static void test_interpolate(void)
 {
-    float value[MOST], kept[MOST];
+    float value[MOST], kept[MOST], *values[3] = {value, NULL, NULL};
     uint32_t rays[WORDS];
     TEST("interpolation between sources");
     for (int n = 0; n < 2000; n++) {
@@ -152,7 +152,7 @@ static void test_interpolate(void)
             rays[j >> 5] |= (uint32_t)ray << (j & 31);
             kept[j] = value[j] = ray ? test_random_float(0, 1) : NAN;
         }
-        tyni_sample_interpolate(value, TYN_ISA_SCALAR, rays, 0, last);
+        tyni_sample_interpolate(values, 1, TYN_ISA_SCALAR, rays, 0, last);
         for (int j = 0, a = 0; j <= last; j++) {
             int b = tyni_sample_next(rays, j, last);
             float f = b > a ? (float)(j - a) / (float)(b - a) : 0;
