@@ -7,6 +7,9 @@
 #include "vec.h"
 #include "view.h"
 
+/* Below this extinction, 1/m, nothing is lost. */
+#define TYNI_SIGMA_LEAST 1e-20f
+
 /* The sum of scatter and absorb of all components, 1/m. */
 void tyni_medium_extinction(const tyn_medium *media, int32_t count, float sigma[3]);
 

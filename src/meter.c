@@ -62,22 +62,27 @@ static void coloured(tyni_meter *m, float ta, float tb)
     }
 }
 
-void tyni_meter_lit(tyni_meter *m, int lit, float t)
+/* Apart from tyni_meter_lit: what only this needs is off the stack when colours are looked up. */
+static TYNI_NOINLINE void plain(tyni_meter *m, float t)
 {
     float at[3];
+    tyni_integral_at(m->integral, t, at);
+    for (int32_t i = 0; i < m->integral->count; i++)
+        m->sum[i] += m->on ? -at[i] : at[i];
+}
+
+void tyni_meter_lit(tyni_meter *m, int lit, float t)
+{
+    float from = m->from;
     int on = lit != m->outside;
     if (on == m->on)
         return;
     m->on = on;
-    if (tyni_view_coloured(m->lamp)) {
-        if (!on && t > m->from)
-            coloured(m, m->from, t);
-        m->from = t;
-        return;
-    }
-    tyni_integral_at(m->integral, t, at);
-    for (int32_t i = 0; i < m->integral->count; i++)
-        m->sum[i] += on ? -at[i] : at[i];
+    m->from = t;
+    if (!tyni_view_coloured(m->lamp))
+        plain(m, t);
+    else if (!on && t > from)
+        coloured(m, from, t);
 }
 
 static void settle(tyni_meter *m)

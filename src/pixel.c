@@ -15,9 +15,6 @@
 /* Samples of a band's pixels. */
 #define TILE_SAMPLES (TYNI_PIXEL_BAND + 1)
 
-/* Below this extinction, 1/m, nothing is lost. */
-#define SIGMA_LEAST 1e-20f
-
 /* A run of pixels in one row. Its planes lie in the worker's scratch and have room for a multiple of 16 pixels. */
 typedef struct run {
     int32_t x, y, count;

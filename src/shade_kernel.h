@@ -60,7 +60,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade)(const tyni_pass *p, 
     const int bounded = tyni_view_bounded(p->lamp);
     float inverse[3], colour[3];
     for (int32_t c = 0; c < 3; c++) {
-        inverse[c] = m.sigma[c] > SIGMA_LEAST ? 1.0f / m.sigma[c] : 0.0f;
+        inverse[c] = m.sigma[c] > TYNI_SIGMA_LEAST ? 1.0f / m.sigma[c] : 0.0f;
         colour[c] = p->lamp->colour[c];
     }
     for (int32_t i = 0; i < own.count; i += v_n) {

@@ -95,11 +95,9 @@ static TYNI_NOINLINE int traversal_begin(traversal *r, const tyni_map *map, cons
     return 1;
 }
 
-/* Of 32 steps, a bit each: whether the ray is lit where it comes into the step's first texel and where it leaves it, then the
- * same of the second; where there is none, what the first one left behind. */
-typedef struct states {
-    uint32_t in[2], out[2];
-} states;
+/* Turns, where light begins or ends, wait until there is a vector of them: each as 4 times its step and which of the step's
+ * states it begins, in the order in, out, in, out; and then, in the same place, the bits of its t. */
+#define TURNS 16
 
 /* ---- kernels ---- */
 
@@ -138,43 +136,10 @@ static void colours(const tyni_lamp *lamp, const tyni_sight *v, const float *t, 
 
 /* ---- the exact walk ---- */
 
-/* t of a step coordinate. */
-static float step_t(const traversal *r, const track *way, float at)
-{
-    return track_t(way, tyni_clampf((at - r->course.from) / (r->course.to - r->course.from), 0.0f, 1.0f));
-}
-
 /* Where a ray whose depth goes from za to zb passes z, from 0 to 1. */
 static float passes(float za, float zb, float z)
 {
     return za != zb ? tyni_clampf((z - za) / (zb - za), 0.0f, 1.0f) : 0.0f;
-}
-
-/* Step k, in which something changes: what walk_states does, and at what t of its four states the ray is. Returns how many
- * count. */
-static TYNI_NOINLINE int32_t times_in_step(const traversal *r, const track *way, int32_t k, const states *lit, int32_t bit,
-                                           float t[4])
-{
-    const tyni_course *c = &r->course;
-    int32_t major = r->first + (c->sign > 0.0f ? k : -k), most = (c->across ? r->texels->height : r->texels->width) - 1;
-    float from = c->minor + c->slope * (float)k, to = c->minor + c->slope * ((float)k + 1.0f), at[3];
-    int32_t minor[2], texels;
-    minor[0] = tyni_clampi(tyni_floori(from), 0, most);
-    minor[1] = tyni_clampi(tyni_floori(to), 0, most);
-    texels = minor[0] != minor[1] ? 2 : 1;
-    at[0] = tyni_maxf((float)k, c->from);
-    at[1] = at[2] = tyni_minf((float)k + 1.0f, c->to);
-    if (texels > 1)
-        at[1] = tyni_clampf((float)k + ((float)tyni_maxi(minor[0], minor[1]) - from) * r->rise, at[0], at[2]);
-    for (int32_t i = 0; i < texels; i++) {
-        float z = tyni_texels_at(r->texels, c->across ? major : minor[i], c->across ? minor[i] : major);
-        t[2 * i] = t[2 * i + 1] = step_t(r, way, at[i]);
-        if ((lit->in[i] ^ lit->out[i]) >> bit & 1) {
-            z = passes(r->z + at[i] * r->dz, r->z + at[i + 1] * r->dz, z);
-            t[2 * i + 1] = step_t(r, way, at[i] + z * (at[i + 1] - at[i]));
-        }
-    }
-    return 2 * texels;
 }
 
 static void walk_texel(const tyni_map *map, const track *way, tyni_meter *m)
@@ -189,53 +154,57 @@ static void walk_texel(const tyni_map *map, const track *way, tyni_meter *m)
 
 #define PACES 64 /* at least: rays over few texels are looked at closely */
 
-/* Steps k .. k + 31 and where they change. */
-static void walk_closely(int32_t isa, const traversal *r, int32_t k, const track *way, tyni_meter *m)
+/* At most TURNS of them. */
+static void take_turns(int32_t isa, const traversal *r, const track *way, int32_t *turn, int32_t count, tyni_meter *m)
 {
-    uint32_t before = (uint32_t)(m->on != m->outside), changes;
-    states lit;
-    float t[4];
-    TYNI_LANES_CALL(isa, walk_states, (r, k, &lit));
-    changes = (lit.in[0] ^ (lit.out[1] << 1 | before)) | (lit.in[0] ^ lit.out[0]) | (lit.out[0] ^ lit.in[1]);
-    changes |= lit.in[1] ^ lit.out[1];
-    if (r->steps - k < 32)
-        changes &= (1u << (r->steps - k)) - 1u;
-    for (; changes; changes &= changes - 1) {
-        int32_t bit = tyni_ctz32(changes), count = times_in_step(r, way, k + bit, &lit, bit, t);
-        for (int32_t i = 0; i < count; i++)
-            tyni_meter_lit(m, (i & 1 ? lit.out : lit.in)[i >> 1] >> bit & 1, t[i]);
-    }
+    int plain = tyni_view_kind(m->lamp) == TYN_LIGHT_DIRECTIONAL && !tyni_view_coloured(m->lamp);
+    TYNI_LANES_CALL(isa, walk_turns, (r, way, turn, count, plain, m));
+    for (int32_t i = 0; i < count && !plain; i++)
+        tyni_meter_lit(m, m->on == m->outside, tyni_bits_float((uint32_t)turn[i]));
 }
 
-/* Paces k .. k + 31 of `count`, each of `pace` steps: a texel in the middle stands for all of them. */
-static void walk_pacing(int32_t isa, const traversal *r, int32_t pace, int32_t k, const track *way, tyni_meter *m)
-{
-    uint32_t before = (uint32_t)(m->on != m->outside), lit, changes;
-    int32_t left = (r->steps + pace - 1) / pace - k;
-    TYNI_LANES_CALL(isa, walk_paces, (r, pace, k, &lit));
-    changes = lit ^ (lit << 1 | before);
-    if (left < 32)
-        changes &= (1u << left) - 1u;
-    for (; changes; changes &= changes - 1) {
-        int32_t bit = tyni_ctz32(changes);
-        tyni_meter_lit(m, lit >> bit & 1, step_t(r, way, (float)((k + bit) * pace)));
-    }
-}
-
+/* `pace` steps at a time: where they are more than one, a texel in the middle stands for all of them. */
 static void walk_texels(int32_t isa, const tyni_map *map, int32_t pace, const track *way, tyni_meter *m)
 {
+    int32_t turn[TURNS], count = 0, paces;
+    uint32_t before = (uint32_t)(m->on != m->outside);
     traversal r;
     if (!traversal_begin(&r, map, way)) {
         walk_texel(map, way, m);
         return;
     }
     pace = tyni_clampi(r.steps / PACES, 1, pace);
-    for (int32_t k = 0; k * pace < r.steps; k += 32) {
+    paces = (r.steps + pace - 1) / pace;
+    for (int32_t k = 0; k < paces; k += 32) {
+        uint32_t lit[4], last, some;
         if (pace > 1)
-            walk_pacing(isa, &r, pace, k, way, m);
+            TYNI_LANES_CALL(isa, walk_paces, (&r, pace, k, lit));
         else
-            walk_closely(isa, &r, k, way, m);
+            TYNI_LANES_CALL(isa, walk_states, (&r, k, lit));
+        /* from what is lit to what changes */
+        last = lit[3];
+        lit[3] ^= lit[2];
+        lit[2] ^= lit[1];
+        lit[1] ^= lit[0];
+        lit[0] ^= last << 1 | before;
+        before = last >> 31;
+        some = lit[0] | lit[1] | lit[2] | lit[3];
+        if (paces - k < 32)
+            some &= (1u << (paces - k)) - 1u;
+        for (; some; some &= some - 1) {
+            int32_t bit = tyni_ctz32(some);
+            for (int32_t e = 0; e < 4; e++) {
+                turn[count] = 4 * (k + bit) * pace + e;
+                count += (int32_t)(lit[e] >> bit & 1u); /* no branch: nobody can foretell it */
+                if (count == TURNS) {
+                    take_turns(isa, &r, way, turn, TURNS, m);
+                    count = 0;
+                }
+            }
+        }
     }
+    if (count)
+        take_turns(isa, &r, way, turn, count, m);
 }
 
 void tyni_walk_ray(int32_t isa, const tyni_lamp *lamp, const tyni_integral *it, const tyni_sight *v, int32_t pace, float *light)

@@ -1,8 +1,9 @@
 /* walk_kernel.h - a template: texels and fixed steps of a ray side by side, for walk.c. */
 
-/* Steps k .. k + 31; what lies behind the last is anything. A ray behind the farthest depth is at it, so that where a texel has
- * no depth, 0, it is lit. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_states)(const traversal *r, int32_t k, states *lit)
+/* Of steps k .. k + 31, a bit each: whether the ray is lit where it comes into the step's first texel and where it leaves it,
+ * then the same of the second; where there is none, what the first one left behind. What lies behind the last step is anything.
+ * A ray behind the farthest depth is at it, so that where a texel has no depth, 0, it is lit. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_states)(const traversal *r, int32_t k, uint32_t lit[4])
 {
     const tyni_texels *t = r->texels;
     const tyni_course *c = &r->course;
@@ -47,14 +48,82 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_states)(const traversal *r, 
         in1 |= v_word(in) << i;
         out1 |= v_word(out) << i;
     }
-    lit->in[0] = in0;
-    lit->out[0] = out0;
-    lit->in[1] = in1;
-    lit->out[1] = out1;
+    lit[0] = in0;
+    lit[1] = out0;
+    lit[2] = in1;
+    lit[3] = out1;
 }
 
-/* Whether the middles of paces k .. k + 31 are lit. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_paces)(const traversal *r, int32_t pace, int32_t k, uint32_t *lit)
+/* track_t of a step coordinate. */
+TYNI_V_INLINE v_float TYNI_V(walk_t)(const traversal *r, const track *way, v_float at)
+{
+    const v_float s = v_clamp((at - r->course.from) / (r->course.to - r->course.from), v_set(0.0f), v_set(1.0f));
+    const v_float a = (1.0f - s) * way->w[1], b = s * way->w[0];
+    return (a * way->t[0] + b * way->t[1]) / (a + b);
+}
+
+/* The step coordinate of a turn: what walk_states has of it. */
+TYNI_V_INLINE v_float TYNI_V(walk_place)(const traversal *r, v_int step, v_int state)
+{
+    const tyni_texels *t = r->texels;
+    const tyni_course *c = &r->course;
+    const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
+    const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
+    const v_int texel = v_iadd(v_imul(step, v_iset(c->sign > 0.0f ? along : -along)), v_iset(r->first * along));
+    const v_float at = v_to_float(step), from = c->minor + c->slope * at, to = c->minor + c->slope * (at + 1.0f);
+    const v_int a = v_imin(v_imax(v_floori(from), none), most), b = v_imin(v_imax(v_floori(to), none), most);
+    const v_float begin = v_max(at, v_set(c->from)), end = v_min(at + 1.0f, v_set(c->to));
+    const v_float cut = v_select(v_ieq(a, b), end, v_clamp(at + (v_to_float(v_imax(a, b)) - from) * r->rise, begin, end));
+    const v_mask second = v_igt(state, v_iset(1)), passes = v_igt(v_iand(state, v_iset(1)), none);
+    const v_float s0 = v_select(second, cut, begin), s1 = v_select(second, end, cut);
+    v_float z, z0, rise, part;
+    if (v_none(passes))
+        return s0;
+    z = TYNI_V(door_texels)(t, v_iadd(texel, v_imul(v_iselect(second, b, a), v_iset(aside))));
+    z0 = r->z + s0 * r->dz;
+    rise = (r->z + s1 * r->dz) - z0;
+    part = v_clamp((z - z0) / rise, v_set(0.0f), v_set(1.0f)); /* passes() */
+    return s0 + v_select(v_mand(passes, v_ne(rise, v_set(0.0f))), part, v_set(0.0f)) * (s1 - s0);
+}
+
+/* tyni_meter_lit of turns, at most TURNS, for a sun without colours. For other light their t, in their places, and no more. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_turns)(const traversal *r, const track *way, int32_t *turn, int32_t count,
+                                                           int plain, tyni_meter *m)
+{
+    const tyni_integral *it = m->integral;
+    const v_int one = v_iset(1);
+    /* every other one begins what differs from outside, and the integral up to it is taken away */
+    const v_float even = v_set(m->on ? 1.0f : -1.0f);
+    v_float t[TURNS / v_n] = {v_set(0.0f)}, sum[TURNS / v_n];
+    for (int32_t i = 0; i < count; i += v_n) {
+        const v_int at = v_iload_n(turn + i, count - i);
+        t[i / v_n] = TYNI_V(walk_t)(r, way, TYNI_V(walk_place)(r, v_shr(at, 2), v_iand(at, v_iset(3))));
+        if (!plain)
+            v_istore_n(turn + i, v_bits(t[i / v_n]), count - i);
+    }
+    for (int32_t c = 0; c < it->count && plain; c++) {
+        const float sigma = it->sigma[c], inverse = sigma > TYNI_SIGMA_LEAST ? 1.0f / sigma : 0.0f;
+        for (int32_t i = 0; i < TURNS; i += v_n) {
+            const v_mask here = v_first(count - i), odd = v_ieq(v_iand(v_iadd(v_iset(i), v_index()), one), one);
+            v_float before, left;
+            sum[i / v_n] = v_set(0.0f);
+            if (i >= count)
+                continue;
+            before = t[i / v_n];
+            if (inverse > 0.0f) {
+                v_fade(sigma * before, &left, &before);
+                before = before * inverse;
+            }
+            sum[i / v_n] = before * v_select(here, v_select(odd, -even, even), v_set(0.0f));
+        }
+        m->sum[c] += v_sum16(sum);
+    }
+    if (plain)
+        m->on ^= count & 1;
+}
+
+/* Whether the middles of paces k .. k + 31 are lit, as walk_states has it of steps. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_paces)(const traversal *r, int32_t pace, int32_t k, uint32_t lit[4])
 {
     const tyni_texels *t = r->texels;
     const tyni_course *c = &r->course;
@@ -70,7 +139,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_paces)(const traversal *r, i
         const v_float z = v_max(r->z + at * r->dz, v_set(0.0f));
         word |= v_word(v_ge(z, TYNI_V(door_texels)(t, texel))) << i;
     }
-    *lit = word;
+    lit[0] = lit[1] = lit[2] = lit[3] = word;
 }
 
 /* Which steps are lit: each is looked up in the first map that covers it. */
