@@ -209,9 +209,8 @@ static void unwarp(const tyni_pass *p, run *r, tile *t)
         r->shared =
             p->last && p->fog[0] == p->medium.sigma[0] && p->fog[1] == p->medium.sigma[1] && p->fog[2] == p->medium.sigma[2];
     }
-    if (tyni_prefilter_kept(p->method))
-        unwarp_shear(p, r, t);
-    else if (tyni_pass_sliced(p) && !tyni_slice_bordered(&p->slices) && !tyni_pass_gridded(p) && p->count < 3)
+    if (tyni_prefilter_kept(p->method) ||
+        (tyni_pass_sliced(p) && !tyni_slice_bordered(&p->slices) && !tyni_pass_gridded(p) && p->count < 3))
         unwarp_shear(p, r, t);
     else
         unwarp_each(p, r);
