@@ -121,6 +121,43 @@ static double off(const bush *b, int c)
     return sum / all;
 }
 
+/* The largest difference of 8 bits. */
+static int worst(const bush *b)
+{
+    int most = 0;
+    for (int i = 0; i < 4 * PIXELS; i++) {
+        int apart = abs(b->target[0][i] - b->target[1][i]);
+        most = apart > most ? apart : most;
+    }
+    return most;
+}
+
+/* Depths of leaves on both sides of the lamp differ by less than makes a break from the camera. */
+static void lamp_in_a_bush(tyn_preset preset, const char *name, double most_off, int most)
+{
+    const tyn_medium haze = {{0.02f, 0.02f, 0.02f}, {0, 0, 0}, TYN_PHASE_HG, 0.5f};
+    tyn_light light = {
+        .kind = TYN_LIGHT_SPOT, .colour = {40, 40, 40}, .position = {0.3f, 0.2f, -10}, .direction = {0, 0, -1}, .angle = 2.4f};
+    tyn_config config;
+    bush *b = bush_new();
+    uint32_t seed = 3;
+    test_begin(name);
+    leaf(b, 0, 0, -10.5f, 8);
+    while (b->leaves < LEAVES) {
+        float x = some(&seed, -1.5f, 1.5f), y = some(&seed, -1.5f, 1.5f), z = some(&seed, -10.2f, -9.6f);
+        leaf(b, x, y, z, some(&seed, 0.04f, 0.1f));
+    }
+    see(b, &light);
+    CHECK(tyn_config_preset(&config, preset, SIZE, SIZE) == TYN_OK);
+    config.initial_step = 16;
+    config.tolerance = 1; /* nothing is refined: rays are at breaks alone */
+    render(b, config, &light, &haze);
+    printf("  %-28s relative L1 to the march %.5f, of 255 at most %d\n", name, off(b, 1), worst(b));
+    CHECK(off(b, 1) < most_off);
+    CHECK(worst(b) <= most);
+    bush_free(b);
+}
+
 /* Leaves side by side with holes between them, and a sun behind. */
 static void hedge(bush *b, tyn_light *light)
 {
@@ -151,5 +188,7 @@ static void coloured_air(void)
 
 void test_leaves(void)
 {
+    lamp_in_a_bush(TYN_PRESET_QUALITY, "a lamp in a bush", 0.0045, 6);
+    lamp_in_a_bush(TYN_PRESET_BALANCED, "a lamp in a bush, balanced", 0.027, 9);
     coloured_air();
 }
