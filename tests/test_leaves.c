@@ -186,9 +186,27 @@ static void coloured_air(void)
     bush_free(b);
 }
 
+/* No sample lies behind the leaves on either line: what the sky's pixels there have is a guess or a ray. */
+static void holes(void)
+{
+    const tyn_medium haze = {{0.03f, 0.03f, 0.03f}, {0, 0, 0}, TYN_PHASE_HG, 0.6f};
+    tyn_light light;
+    tyn_config config;
+    bush *b = bush_new();
+    TEST("the sky through holes of a hedge");
+    hedge(b, &light);
+    light.colour[0] = light.colour[1] = light.colour[2] = 1.4f; /* so dim that no ray is spent on them */
+    CHECK(tyn_config_preset(&config, TYN_PRESET_HANDHELD, SIZE, SIZE) == TYN_OK);
+    render(b, config, &light, &haze);
+    printf("  the sky through a hedge      relative L1 to the march %.5f, of 255 at most %d\n", off(b, 1), worst(b));
+    CHECK(worst(b) <= 60);
+    bush_free(b);
+}
+
 void test_leaves(void)
 {
     lamp_in_a_bush(TYN_PRESET_QUALITY, "a lamp in a bush", 0.0045, 6);
     lamp_in_a_bush(TYN_PRESET_BALANCED, "a lamp in a bush, balanced", 0.027, 9);
     coloured_air();
+    holes();
 }
