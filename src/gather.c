@@ -69,6 +69,16 @@ static int place_in(const tyni_slices *slices, float x, float y, int32_t *line, 
     return 1;
 }
 
+float tyni_gather_threshold(float threshold, const tyni_view *view, const tyni_lamp *lamp, float x, float y, float depth)
+{
+    float z = tyni_maxf(depth, TYNI_ENTRY_NEAREST) * view->far_depth;
+    tyni_vec3 way;
+    if (tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL)
+        return threshold;
+    way = tyni_vec_sub(lamp->position, tyni_view_point(view, x, y, z));
+    return threshold * tyni_clampf(tyni_vec_length(way) / z, TYNI_GATHER_NARROW, 1.0f);
+}
+
 /* tyndall's shear grid: a pixel lies on the samples' own column, between two lines. */
 static int gather_shear(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
 {

@@ -36,6 +36,11 @@ typedef struct tyni_gather {
     int32_t taps;
 } tyni_gather;
 
+/* The threshold of relative depth of a pixel in the light of a lamp: near it, what a ray gathers changes with its end's
+ * distance to the lamp and not with the one to the camera. depth: relative to far. Never 0: weights are divided by it. */
+#define TYNI_GATHER_NARROW 1e-3f
+float tyni_gather_threshold(float threshold, const tyni_view *view, const tyni_lamp *lamp, float x, float y, float depth);
+
 /* Visibility at (x, y) with depth relative to far, as {low, high} or {red, green, blue}. 0: no sample fits, the pixel is
  * rejected. */
 int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,

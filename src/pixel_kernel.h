@@ -105,9 +105,32 @@ TYNI_V_INLINE void TYNI_V(pixel_anywhere)(const tyni_field *f, const TYNI_V(pixe
         out[side] = v_igather(f->entries + (ptrdiff_t)side * f->pitch, at);
 }
 
+/* tyni_gather_threshold of pixels from px on, at depths relative to far. */
+TYNI_V_INLINE v_float TYNI_V(pixel_threshold)(const tyni_view *view, tyni_vec3 lamp, float threshold, int32_t px, float py,
+                                              v_float depth)
+{
+    const v_float at = v_to_float(v_iadd(v_iset(px), v_index())) + 0.5f, z = depth * view->far_depth;
+    const tyni_vec3 o = tyni_vec_mad(view->origin, py, view->dy);
+    v_float x[3];
+    x[0] = o.x + at * view->dx.x;
+    x[1] = o.y + at * view->dx.y;
+    x[2] = o.z + at * view->dx.z;
+    if (view->orthographic) {
+        x[0] = lamp.x - (x[0] + z * view->forward.x);
+        x[1] = lamp.y - (x[1] + z * view->forward.y);
+        x[2] = lamp.z - (x[2] + z * view->forward.z);
+    } else {
+        x[0] = lamp.x - z * x[0];
+        x[1] = lamp.y - z * x[1];
+        x[2] = lamp.z - z * x[2];
+    }
+    x[0] = v_sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / z;
+    return threshold * v_clamp(x[0], v_set(TYNI_GATHER_NARROW), v_set(1.0f));
+}
+
 /* A sample of each pixel's two lines: tap() of gather.c. `at`: the pixel's depth, not below the nearest that is told apart;
  * `share`: of the lines in the pixel. */
-TYNI_V_INLINE void TYNI_V(pixel_taps)(TYNI_V(pixel_sum) * s, const tyni_field *f, const v_int entry[2],
+TYNI_V_INLINE void TYNI_V(pixel_taps)(TYNI_V(pixel_sum) * s, v_float threshold, const v_int entry[2],
                                       const TYNI_V(pixel_lines) * l, v_float at, const v_float share[2])
 {
     const v_int ten = v_iset(1023);
@@ -118,7 +141,7 @@ TYNI_V_INLINE void TYNI_V(pixel_taps)(TYNI_V(pixel_sum) * s, const tyni_field *f
         const v_float other =
             v_from_bits(v_iadd(v_shl(v_isub(code, v_iset(1)), 15), v_iset((int32_t)TYNI_ENTRY_FLOOR + 0x4000)));
         off[side] = v_abs(at - other);
-        limit[side] = f->threshold * v_min(at, other);
+        limit[side] = threshold * v_min(at, other);
         weight[side] = v_select(v_ieq(code, v_iset(0)), v_set(0.0f), share[side]);
     }
     if (!v_all(v_mand(v_le(off[0], limit[0]), v_le(off[1], limit[1])))) {
@@ -191,6 +214,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p,
     const int32_t along_y = sector->along_y, start = sector->start, count = sector->count, most = field.pitch - 1;
     const int32_t stride = p->slices.stride, edge = p->slices.width - 1;
     const float step = 1.0f / (float)stride;
+    const int local = tyni_view_kind(p->lamp) != TYN_LIGHT_DIRECTIONAL;
     int32_t shift = 0;
     while (1 << shift < stride)
         shift++;
@@ -205,9 +229,13 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p,
         v_int sample = v_shr(part, shift), entry[2];
         TYNI_V(pixel_lines) l;
         TYNI_V(pixel_sum) s = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
+        v_float threshold = v_set(field.threshold);
         v_mask fits;
         int in_tile, side_by_side;
         TYNI_V(pixel_between_lines)(&field, own.value[0] + i, n, start, count - 2, &l);
+        if (local)
+            threshold =
+                TYNI_V(pixel_threshold)(&p->view, p->lamp->position, field.threshold, own.x + i, (float)own.y + 0.5f, at);
         in_tile = t && l.span < v_n && l.low >= t->low && l.low + l.span + 1 < t->low + t->count;
         side_by_side = !along_y && l.span < FEW && base + v_n <= field.pitch;
         for (int32_t next = 0; next < samples; next++) {
@@ -228,7 +256,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p,
                 TYNI_V(pixel_along)(&field, &l, p->slices.count - 1, sample, base, entry);
             else
                 TYNI_V(pixel_anywhere)(&field, &l, sample, entry);
-            TYNI_V(pixel_taps)(&s, &field, entry, &l, at, share);
+            TYNI_V(pixel_taps)(&s, threshold, entry, &l, at, share);
         }
         fits = v_mand(wanted, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
         s.weight = 1.0f / (s.weight * (1023.0f * 1023.0f));

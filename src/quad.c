@@ -303,7 +303,7 @@ static TYNI_NOINLINE int between(const quads *q, uint32_t before, uint32_t behin
         const float grown = lost1 > lost0 ? tyni_clampf((lost - lost0) / (lost1 - lost0), 0.0f, 1.0f) : 0.5f;
         float light = light0 + grown * (light1 - light0);
         if (!behind)
-            light = before ? near.bare[c] * lost : 0.5f * full * lost;
+            light = light0 + 0.5f * (near.bare[c] + full) * (lost - lost0);
         if (tyni_absf(most - least) * q->gain > GAP * LEVELS * LEVELS)
             return 0;
         a->bare[c] = lost > 0.0f ? tyni_maxf(light, 0.0f) / lost : 0.0f;

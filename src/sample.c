@@ -61,6 +61,28 @@ static void set(uint32_t *words, int32_t j)
     words[j >> 5] |= 1u << (j & 31);
 }
 
+int32_t tyni_sample_breaks_at(uint32_t *breaks, const float *depth, const tyni_slice *slice, const tyni_view *view,
+                              tyni_vec3 lamp, float threshold)
+{
+    int32_t count = 0;
+    float before = 0.0f;
+    for (int32_t j = slice->first; j <= slice->last; j++) {
+        const tyni_vec3 at = tyni_vec_mad(slice->a, tyni_slice_p(slice, j), slice->b);
+        const tyni_vec3 end = view->orthographic ? tyni_vec_mad(at, depth[j], view->forward) : tyni_vec_scale(at, depth[j]);
+        const tyni_vec3 way = tyni_vec_sub(lamp, end);
+        const float far = tyni_vec_dot(way, way);
+        if (j > slice->first) {
+            const float jump = depth[j] - depth[j - 1];
+            if (jump * jump > threshold * threshold * tyni_minf(before, far) && !tyni_sample_bit(breaks, j - 1)) {
+                set(breaks, j - 1);
+                count++;
+            }
+        }
+        before = far;
+    }
+    return count;
+}
+
 int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slice *slice, int32_t step)
 {
     int32_t words = tyni_sample_words(slice->last + 1), count = 0, dense, from, to;

@@ -33,6 +33,11 @@ float tyni_sample_reach(const float *depth, int32_t isa, const tyni_slice *slice
  * many. Samples off the screen are no part of first .. last, so the ends of a line need no breaks. */
 int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, int32_t first, int32_t last, float threshold);
 
+/* The same near a lamp: also sets the bits where depth jumps by more than `threshold` of the nearer one's distance to it. What
+ * a ray gathers there changes with that, not with the way from the camera. Returns how many more. */
+int32_t tyni_sample_breaks_at(uint32_t *breaks, const float *depth, const tyni_slice *slice, const tyni_view *view,
+                              tyni_vec3 lamp, float threshold);
+
 /* Sets the bits of the ray samples: every `step`th, every quarter of that near the epipole, both sides of every break, the
  * first and the last. Returns how many. */
 int32_t tyni_sample_rays(uint32_t *rays, const uint32_t *breaks, const tyni_slice *slice, int32_t step);

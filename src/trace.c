@@ -193,6 +193,9 @@ static int32_t sample_line(const tyni_pass *p, tyni_slice *slice, int32_t index,
     s->stats->samples += slice->last - slice->first + 1;
     s->stats->breaks +=
         tyni_sample_breaks(s->breaks, config->isa, s->depth, slice->first, slice->last, config->break_threshold);
+    if (tyni_view_kind(p->lamp) != TYN_LIGHT_DIRECTIONAL)
+        s->stats->breaks +=
+            tyni_sample_breaks_at(s->breaks, s->depth, slice, &p->view, p->lamp->position, config->break_threshold);
     return tyni_sample_rays(s->rays, s->breaks, slice, config->initial_step);
 }
 
@@ -316,7 +319,8 @@ void tyni_trace_coarse(tyni_pass *p)
 static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stats, uint64_t *correct_ns, float value[3])
 {
     int32_t x = tyni_mini((int32_t)px, p->view.width - 1), y = tyni_mini((int32_t)py, p->view.height - 1);
-    float length, depth = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y)), t0, t1;
+    float length, depth = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y)), t0, t1, at;
+    tyni_field lines = p->lines;
     uint64_t start;
     tyni_sight v;
     length = tyni_view_sight(&p->view, px, py, &v);
@@ -325,10 +329,12 @@ static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stat
         stats->rays += !tyni_pass_sliced(p);
         return 0.0f;
     }
+    at = t1 / (length * p->view.far_depth);
+    lines.threshold = tyni_gather_threshold(lines.threshold, &p->view, p->lamp, px, py, at);
     if (!tyni_pass_sliced(p)) {
         tyni_pass_walk(p, &v, depth * length, value);
         stats->rays++;
-    } else if (!tyni_gather_lines(&p->gather, &p->lines, &p->slices, px, py, t1 / (length * p->view.far_depth), value)) {
+    } else if (!tyni_gather_lines(&p->gather, &lines, &p->slices, px, py, at, value)) {
         start = tyni_pass_now(p);
         tyni_pass_walk(p, &v, depth * length, value);
         *correct_ns += tyni_pass_now(p) - start;
