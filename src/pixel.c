@@ -53,6 +53,12 @@ static TYNI_NOINLINE int visible(const tyni_pass *p, float px, float py, float a
     return p->naive;
 }
 
+/* Pixels of images that are read after this run's depth: the row below, and of this one colour and target. */
+typedef struct ahead {
+    const uint8_t *pixels[3];
+    int32_t bytes[3]; /* of a pixel; 0: no image */
+} ahead;
+
 /* Entries of lines along y as rows of pixels want them: lines side by side, sample after sample. Of one run of pixels in one
  * band. */
 typedef struct tile {
@@ -68,8 +74,25 @@ typedef struct tile {
 #define TYNI_KERNEL "shade_kernel.h"
 #include "lanes/each.h"
 
+/* What follows from the pixels' depths. A function of its own, as others below, for the stack that later stages need. */
+static TYNI_NOINLINE void see(const tyni_pass *p, const run *r)
+{
+    const tyn_image *image[3];
+    ahead a;
+    image[0] = p->depth.image;
+    image[1] = &p->frame->colour;
+    image[2] = &p->frame->target;
+    for (int32_t i = 0; i < 3; i++) {
+        int32_t y = i ? r->y : tyni_mini(r->y + 1, p->view.height - 1);
+        a.bytes[i] = image[i]->pixels ? tyn_format_bytes(image[i]->format) : 0;
+        a.pixels[i] = image[i]->pixels ? tyni_image_row(image[i], y) : (const void *)r->depth;
+        a.pixels[i] += (ptrdiff_t)r->x * a.bytes[i];
+    }
+    TYNI_LANES_CALL(p->context->config.isa, pixel_sights, (p, r, &a));
+}
+
 /* TYN_METHOD_PREFILTERED: pixels first .. end - 1 from the rows of the slices beside each. */
-static void unwarp_rows(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first, int32_t end)
+static TYNI_NOINLINE void unwarp_rows(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first, int32_t end)
 {
     tyni_lookup l;
     if (sector->count < 2)
@@ -187,7 +210,7 @@ static void unwarp_each(const tyni_pass *p, const run *r)
 }
 
 /* The light's part of each ray, where that is not all of it. */
-static void clip_rays(const tyni_pass *p, const run *r)
+static TYNI_NOINLINE void clip_rays(const tyni_pass *p, const run *r)
 {
     for (int32_t i = 0; i < r->count; i++) {
         tyni_sight v;
@@ -307,7 +330,7 @@ static void draw_run(const tyni_pass *p, run *r, tile *t, float *sum)
             memcpy(r->light[c], sum + c * r->count, bytes);
     }
     memset(r->rejected, 0, sizeof *r->rejected * (size_t)tyni_sample_words(r->count));
-    TYNI_LANES_CALL(p->context->config.isa, pixel_sights, (p, r));
+    see(p, r);
     if (!dark)
         unwarp(p, r, t);
     time[1] = tyni_pass_now(p);
@@ -323,22 +346,6 @@ static void draw_run(const tyni_pass *p, run *r, tile *t, float *sum)
     *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += time[1] - time[0];
     r->stats->correct_ns += time[2] - time[1];
     r->stats->composite_ns += time[3] - time[2];
-}
-
-static void look_ahead(const tyni_pass *p, run *r, int32_t end)
-{
-    const tyn_image *image[3];
-    int32_t y[3];
-    image[0] = p->depth.image;
-    image[1] = &p->frame->colour;
-    image[2] = &p->frame->target;
-    y[0] = tyni_mini(r->y + 1, end - 1);
-    y[1] = y[2] = r->y;
-    for (int32_t i = 0; i < 3; i++) {
-        r->ahead_bytes[i] = image[i]->pixels ? tyn_format_bytes(image[i]->format) : 0;
-        r->ahead[i] = image[i]->pixels ? tyni_image_row(image[i], y[i]) : (const void *)r->depth;
-        r->ahead[i] += (ptrdiff_t)r->x * r->ahead_bytes[i];
-    }
 }
 
 void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
@@ -376,7 +383,6 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
         for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++) {
             float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r.y * p->view.width + r.x) * 3 : NULL;
             r.depth = tyni_door_row(&p->depth, r.x, r.y, r.count, s.depth);
-            look_ahead(p, &r, end);
             draw_run(p, &r, &t, sum);
         }
     }

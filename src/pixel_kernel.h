@@ -1,6 +1,6 @@
 /* pixel_kernel.h - a template: visibility of a run of pixels from lines, for pixel.c. Planes have room for whole vectors. */
 
-static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const run *r)
+static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const run *r, const ahead *a)
 {
     const tyni_view *view = &p->view;
     const float py = (float)r->y + 0.5f, far = view->far_depth, most = p->frame->max_distance;
@@ -22,7 +22,7 @@ static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const run *r)
             reach = v_min(v_set(most), reach);
         TYNI_UNROLL
         for (int32_t j = 0; j < 3 && v_n > 1; j++) /* images are beyond the nearest caches, and runs too short to be foreseen */
-            TYNI_PREFETCH(r->ahead[j] + (ptrdiff_t)r->ahead_bytes[j] * i);
+            TYNI_PREFETCH(a->pixels[j] + (ptrdiff_t)a->bytes[j] * i);
         v_store(r->nearness + i, inverse * (1.0f / far));
         v_store(r->reach + i, reach);
         v_store(r->cosine + i, v_max(v_min((x * to.x + y * to.y + z * to.z) * inverse, v_set(1.0f)), v_set(-1.0f)));
