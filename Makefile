@@ -180,7 +180,7 @@ help:
 	@echo 'make bench      times against a plain pass over the pixels'
 	@echo 'make bench-raster  the rasterizer, every ISA, and against llvmpipe where EGL and GL are installed'
 	@echo 'make bench-prefiltered  tables and pictures of prefiltered rows'
-	@echo 'make stability  a creeping camera and a light at every place against the march: tables, plots, the worst frames; 45 minutes'
+	@echo 'make stability  a creeping camera and a light at every place against the march: tables, plots, the worst frames; 10 minutes'
 	@echo 'make size       text, data, bss and stack of the library and its parts'
 	@echo 'make golden     rewrites tests/golden.txt, pictures in build/golden'
 	@echo 'make fuzz       a minute of each fuzz target; SECONDS=, TARGETS=, FUZZER=afl'

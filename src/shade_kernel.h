@@ -2,8 +2,7 @@
 
 /* Visibility of the third channel: the mean of the two with the exponent 1/2, as quads have it. It is e^(-extinction s)
  * averaged over what is lit of the ray, by the same over all of it. Where little is lit the mean is nearly geometric, but what
- * is lit spreads less than the whole ray, and so the third is brighter than that: by twice its error, at a low sun behind
- * trees. */
+ * is lit spreads less than the whole ray, and so the third is brighter than that. */
 TYNI_V_INLINE v_float TYNI_V(pixel_between)(v_float a, v_float b, float blend)
 {
     const float rest = 1.0f - blend;

@@ -27,7 +27,7 @@ do for [name in files('light')] {
     set multiplot layout 2,1 title name noenhanced
     set autoscale
     unset title
-    set xtics 32
+    set xtics 16
     set logscale y
     set ylabel 'relative L1, %'
     plot for [i=2:6] at(name) using 1:i with lines
@@ -53,7 +53,7 @@ do for [name in files('map')] {
     unset key
     do for [i in '3 4 5 6 7 9 10 11 12 13'] {
         set title sprintf('%s, %s', system(sprintf("head -n 1 %s | cut -d, -f%s", at(name), i)), i > 7 ? '/255' : '%')
-        plot at(name) using 1:2:int(i) with points pointtype 5 pointsize 1.4 palette
+        plot at(name) using 1:2:int(i) with points pointtype 5 pointsize 2.8 palette
     }
     unset object 1
     unset object 2
