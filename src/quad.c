@@ -551,7 +551,7 @@ void tyni_quad_band(void *argument, int32_t index, int32_t worker)
     tyni_pass_scratch(p->context, worker, &s);
     set_up(&q, p, &s);
     for (q.y = index * TYNI_PIXEL_BAND; q.y < end; q.y += 2) {
-        const int32_t rows = tyni_mini(end - q.y, 2);
+        const int32_t rows = end - q.y > 1 ? 2 : 1;
         for (int32_t i = 0; i < rows; i++)
             tyni_composite_dither(&p->frame->display, q.y + i, q.dither[i]);
         for (q.x = 0; q.x < p->view.width; q.x += q.count)

@@ -16,8 +16,8 @@
 #define BATCH 64 /* points a job */
 
 /* What jobs share. Nothing counts the jobs but the results: each batch begins with a transmittance that is none. */
-#define WAITING -1.0f
-#define TWICE -2.0f
+#define WAITING (-1.0f)
+#define TWICE (-2.0f)
 
 typedef struct pass {
     const tyn_frame *frame;

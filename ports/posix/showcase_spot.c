@@ -8,7 +8,7 @@
 
 #define ROOM 4.6f    /* half width */
 #define CEILING 5.0f /* height */
-#define BACK -8.0f   /* the wall with the fan */
+#define BACK (-8.0f) /* the wall with the fan */
 #define FRONT 6.0f
 #define FAN_X 0.5f
 #define FAN_Y 2.55f
