@@ -29,6 +29,9 @@ typedef struct record {
 } record;
 
 /* Ends the program with a message. */
+#if defined(__GNUC__)
+__attribute__((noreturn))
+#endif
 void bench_die(const char *what);
 void bench_need(tyn_status status, const char *what);
 
