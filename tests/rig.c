@@ -178,7 +178,7 @@ rig *rig_new(const oracle_scene *scene, int32_t shadow_size)
 {
     rig *r = calloc(1, sizeof *r);
     size_t pixels = (size_t)scene->width * (size_t)scene->height, texels = (size_t)shadow_size * (size_t)shadow_size;
-    int ready = r != NULL;
+    int ready;
     if (!r)
         return NULL;
     r->width = scene->width;

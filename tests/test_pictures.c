@@ -314,6 +314,8 @@ static void test_deflate(void)
     uint8_t *from = calloc(MOST, 1), *back = malloc(MOST);
     bytes packed = {malloc(2 * MOST), 0, 2 * MOST, -1};
     TEST("deflate is undone by a plain inflate");
+    if (!from || !back || !packed.data)
+        abort();
     for (int round = 0; round < 40; round++) {
         size_t size = round < 12 ? (size_t)round : test_random() % MOST;
         unsigned range = round % 5 == 0 ? 256 : round % 5 == 1 ? 1 : round % 5 == 2 ? 2 : 9;
@@ -386,11 +388,15 @@ static void check_png(int width, int height)
     const char *path = files_path("t.png");
     FILE *file = fopen(path, "wb");
     int ends = 0, same = 1;
+    if (!rgba || !rgb || !filtered)
+        abort();
     for (size_t i = 0; i < 4 * count; i++)
         rgba[i] = (uint8_t)(i / 40 + test_random() % 3);
     CHECK(file && png_write(file, rgba, width, height) == 0 && fclose(file) == 0);
     data = (uint8_t *)files_read(path, &size);
     packed = malloc(size + 1);
+    if (!data || !packed)
+        abort();
     CHECK(size > 57 && memcmp(data, "\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) == 0);
     CHECK(big(data + 16) == (uint32_t)width && big(data + 20) == (uint32_t)height &&
           memcmp(data + 24, "\x08\x02\0\0\0", 5) == 0);

@@ -28,6 +28,8 @@ void test_pool(void)
 {
     static const int32_t sizes[] = {1, 2, 3, 8, TYN_MAX_WORKERS};
     tally *t = malloc(sizeof *t);
+    if (!t)
+        abort();
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
         pool *p = pool_create(sizes[s]);
         const tyn_executor *e = p ? pool_executor(p) : NULL;

@@ -40,6 +40,8 @@ static void *make_texture(tyn_image *image, tyn_format format, int32_t width, in
     const int32_t row = width * tyn_format_bytes(format);
     const ptrdiff_t stride = (row + 3) / 4 * 4 + 4 * (ptrdiff_t)(test_random() % 3);
     uint8_t *bytes = malloc((size_t)(stride * height));
+    if (!bytes)
+        abort();
     for (ptrdiff_t i = 0; i < stride * height; i++)
         bytes[i] = (uint8_t)test_random();
     if (format == TYN_RGB_F32)
@@ -253,7 +255,7 @@ static int same(const tyn_image *a, const tyn_image *b)
     int equal = 1;
     for (int32_t y = 0; y < a->height; y++)
         equal &= memcmp((uint8_t *)a->pixels + a->stride * y, (uint8_t *)b->pixels + b->stride * y,
-                        (size_t)(a->width * tyn_format_bytes(a->format))) == 0;
+                        (size_t)a->width * (size_t)tyn_format_bytes(a->format)) == 0;
     return equal;
 }
 

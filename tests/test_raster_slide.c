@@ -116,7 +116,7 @@ static void test_slides(tyn_light_kind kind)
         CHECK(easel_draw(&e, &mesh, 1) == TYN_OK);
         for (int32_t y = 0; y < H; y++)
             for (int32_t x = 0; x < W; x++) {
-                double p[3] = {0, 0, -4}, r[2], at[2], edge, to = 0, square = 1, facing = -(double)l.direction[2];
+                double p[3] = {0, 0, -4}, r[2], at[2], edge, to = 0, square = 1, facing;
                 int i;
                 const float *got = easel_colour(&e, x, y);
                 easel_ray(&e.surface.camera, W, H, x, y, r);

@@ -173,7 +173,7 @@ static void test_sizes(void)
     TEST("tyn_render: any size and stride");
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         int w = sizes[i][0], h = sizes[i][1];
-        size_t pixels = (size_t)(w * h);
+        size_t pixels = (size_t)w * (size_t)h;
         rig *r = rig_stock(i % 2 ? "lamp in view" : "sun ahead", w, h, 64);
         for (int way = 0; way < RIG_WAYS; way++)
             for (int upside_down = 0; upside_down < 2; upside_down++) {
@@ -319,7 +319,8 @@ static void test_optional(void)
     tyn_frame frame = rig_frame(r);
     float *whole = calloc(W * H, 3 * sizeof *whole), *black = calloc(W * H, 3 * sizeof *black);
     TEST("tyn_render: without colour, target, scatter, lights, media, shadow map");
-    CHECK(whole && black);
+    if (!whole || !black)
+        abort();
     CHECK(rig_render(r, &config, &frame) == TYN_OK);
     memcpy(whole, r->scatter, W * H * 3 * sizeof *whole);
     frame.target.pixels = NULL;

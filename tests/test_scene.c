@@ -262,6 +262,8 @@ static void test_long_lines(void)
     tool_error error;
     scene s;
     TEST("lines and tokens of any length");
+    if (!lines)
+        abort();
     memset(lines, ' ', size);
     memcpy(lines, HEAD "ambient", sizeof HEAD "ambient" - 1);
     memcpy(lines + size - 6, "1 1 1\n", 6);

@@ -63,7 +63,7 @@ static void test_epipoles(void)
     for (size_t i = 3; i < NAMES; i++) {
         const float *expected = at[(i - 3) & 1];
         scene s;
-        tyn_camera c;
+        tyn_camera c = {0};
         float to[3] = {0, 0, 0};
         scene_init(&s);
         CHECK(showcase_scene(names[i], &s) == 0 && scene_camera_make(&s, 1920, 1080, &c) == TYN_OK);

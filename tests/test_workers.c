@@ -72,7 +72,9 @@ static void run_crowd(void *context, tyn_job job, void *argument, int32_t count)
         run_threads(c, job, argument, count);
         return;
     }
-    order = malloc((size_t)count * sizeof *order);
+    order = malloc((size_t)(count + 1) * sizeof *order);
+    if (!order)
+        abort();
     for (int32_t i = 0; i < count; i++)
         order[i] = c->kind == REVERSED ? count - 1 - i : i;
     for (int32_t i = count - 1; c->kind == SHUFFLED && i > 0; i--) {
