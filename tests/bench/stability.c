@@ -148,7 +148,7 @@ static void camera_path(show *w, FILE *file, int move, int frames, change sum[WA
     double level = 0;
     memset(sum, 0, (WAYS + 1) * sizeof *sum);
     for (int i = 0; i <= WAYS; i++)
-        if (!(last[i] = malloc(count * sizeof **last)))
+        if (!(last[i] = calloc(count, sizeof **last)))
             bench_die("no memory");
     look(w, 0);
     for (int f = 0; f < frames; f++, creep(&w->s.camera, move, w->s.width)) {
