@@ -1,9 +1,9 @@
 #!/bin/sh
-# check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; fuzzing; a fresh clone as
-# the README has it; renders of the shared data; the ports and the page; and other machines. About 50 minutes on 2 cores. What a
-# machine lacks is SKIPPED.
-#     sh tests/check-all.sh [PART...]      parts: format compilers sanitizers valgrind coverage fuzz instructions ports clone shared
-#                                          wasm sameness
+# check-all.sh - the tests again under other compilers, optimisers, sanitizers and valgrind; the formatting; static analysers; fuzzing; a
+# fresh clone as the README has it; renders of the shared data; the ports and the page; and other machines. About 50 minutes on 2
+# cores. What a machine lacks is SKIPPED.
+#     sh tests/check-all.sh [PART...]      parts: format analysis compilers sanitizers valgrind coverage fuzz instructions ports clone
+#                                          shared wasm sameness
 . tests/shell.sh
 export MAKE
 mkdir -p "$B"
@@ -45,6 +45,10 @@ can() {
 
 check_format() {
     if have clang-format; then quiet 'clang-format' "$MAKE" format-check; else skip 'no clang-format'; fi
+}
+
+check_analysis() {
+    part env B="$B" sh tests/analysis.sh
 }
 
 check_compilers() {
@@ -295,7 +299,7 @@ check_sameness() {
     part env TYN_UNTIL=$((began + 3900)) sh tests/sameness.sh # 65 minutes: a machine may be slow
 }
 
-for check in format compilers sanitizers valgrind coverage fuzz instructions ports clone shared wasm sameness; do
+for check in format analysis compilers sanitizers valgrind coverage fuzz instructions ports clone shared wasm sameness; do
     wanted $check || continue
     echo "==== $check"
     start=$(date +%s)
