@@ -177,7 +177,7 @@ mkdir -p "$work"
 # as the makefile writes them, for tests/main.c and others
 for file in tests/test_*.c; do echo "$file"; done | sed 's/.*test_\(.*\)\.c/ROOM(\1)/' >"$work/rooms.h"
 for file in tests/fuzz_*.c; do echo "$file"; done | sed -e /fuzz_main/d -e 's/.*fuzz_\(.*\)\.c/TARGET(\1)/' >"$work/targets.h"
-empty 'every line of tests/analysis.txt has a reason' "$(grep -v -e '^#' -e '^\(gcc\|tidy\|cppcheck\) | [^ ][^|]* | [^|]*[^ |] | [^|]*[^ |]$' tests/analysis.txt)"
+empty 'every line of tests/analysis.txt has a reason' "$(grep -v -e '^#' -e '^$' -e '^\(gcc\|tidy\|cppcheck\) | [^ ][^|]* | [^|]*[^ |] | [^|]*[^ |]$' tests/analysis.txt)"
 [ $# -gt 0 ] || set -- gcc tidy cppcheck
 for tool in "$@"; do
     case $tool in
