@@ -110,9 +110,9 @@ static const char *const later[] = {"--frames", NULL};
 static int bad(const char *option, const char *value, const char *why)
 {
     if (value)
-        fprintf(stderr, "tyndall: %s '%s': %s\n", option, value, why);
+        error_say("%.500s '%.500s': %s", option, value, why);
     else
-        fprintf(stderr, "tyndall: %s: %s\n", option, why);
+        error_say("%.500s: %s", option, why);
     return -1;
 }
 
