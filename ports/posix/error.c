@@ -21,8 +21,8 @@ static size_t place(char *out, size_t size, const char *file, int32_t line, cons
     if (token && n + TOKEN_MAX + 16 < size) {
         size_t shown = length < TOKEN_MAX ? length : TOKEN_MAX;
         out[n++] = '\'';
-        memcpy(out + n, token, shown);
-        n += shown;
+        for (size_t i = 0; i < shown; i++)
+            out[n++] = token[i] ? token[i] : '?'; /* of binary files: a NUL would end the message */
         wrote = snprintf(out + n, size - n, "%s': ", shown < length ? "..." : "");
         n += wrote > 0 ? (size_t)wrote : 0;
     }

@@ -3,16 +3,73 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char *slurp(int fd, char **data, size_t *size)
+#define BLOCK 65536
+#define PIPE_MOST ((size_t)256 << 20) /* bytes: twice a picture of 3840 x 2160 pixels as floats */
+#define PIPE_WAIT 3                   /* seconds */
+
+static void on_alarm(int number)
+{
+    (void)number; /* its coming ends open() */
+}
+
+int file_open(const char *path, int flags, const char **why)
 {
     struct stat st;
-    size_t room = 65536, used = 0;
+    struct sigaction action, old;
+    int fd, pipe = stat(path, &st) == 0 && S_ISFIFO(st.st_mode);
+    if (pipe) {
+        memset(&action, 0, sizeof action);
+        action.sa_handler = on_alarm;
+        sigemptyset(&action.sa_mask);
+        sigaction(SIGALRM, &action, &old);
+        alarm(PIPE_WAIT);
+    }
+    fd = open(path, flags);
+    if (fd < 0)
+        *why = pipe && errno == EINTR ? "is a pipe with nobody at its other end" : strerror(errno);
+    if (pipe) {
+        alarm(0);
+        sigaction(SIGALRM, &old, NULL);
+    }
+    return fd;
+}
+
+/* Whether the beginning shows that the rest need not be read: it is not what it should be, whatever comes. */
+static int judged(file_kind kind, const char *bytes, size_t used, size_t got)
+{
+    return kind == FILE_TEXT ? memchr(bytes + used - got, '\0', got) != NULL : bytes[0] != 'P';
+}
+
+/* Room for more than `used` bytes; NULL: *why is set and the old block freed. */
+static char *grow(char *bytes, size_t used, size_t *room, const struct stat *st, const char **why)
+{
+    size_t want = *room * 2;
+    char *more = NULL;
+    *why = "out of memory";
+    if (S_ISREG(st->st_mode) && (uintmax_t)st->st_size >= want)
+        want = (size_t)st->st_size + 1; /* one more: the read that finds the end needs no growth */
+    if (!S_ISREG(st->st_mode) && used >= PIPE_MOST)
+        *why = "is a pipe that goes on after 256 MiB";
+    else if (want < SIZE_MAX / 4)
+        more = realloc(bytes, want + 1);
+    if (!more)
+        free(bytes);
+    *room = want;
+    return more;
+}
+
+static const char *slurp(int fd, file_kind kind, char **data, size_t *size)
+{
+    struct stat st;
+    size_t room = BLOCK, used = 0;
+    const char *why;
     if (fstat(fd, &st) != 0)
         return strerror(errno);
     if (S_ISDIR(st.st_mode))
@@ -22,33 +79,26 @@ static const char *slurp(int fd, char **data, size_t *size)
         return "is not a file";
     if (S_ISREG(st.st_mode) && (uintmax_t)st.st_size >= SIZE_MAX / 4)
         return "is too large";
-    if (S_ISREG(st.st_mode) && st.st_size > 0)
-        room = (size_t)st.st_size + 1; /* one more: the read that finds the end needs no growth */
+    if (S_ISREG(st.st_mode) && st.st_size > 0 && st.st_size < BLOCK)
+        room = (size_t)st.st_size + 1;
     char *bytes = malloc(room + 1);
     if (!bytes)
         return "out of memory";
     for (;;) {
         ssize_t got;
-        if (used == room) {
-            char *more = room < SIZE_MAX / 4 ? realloc(bytes, room * 2 + 1) : NULL;
-            if (!more) {
-                free(bytes);
-                return "out of memory";
-            }
-            bytes = more;
-            room *= 2;
-        }
+        if (used == room && !(bytes = grow(bytes, used, &room, &st, &why)))
+            return why;
         got = read(fd, bytes + used, room - used);
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0) {
-            const char *why = strerror(errno);
+            why = strerror(errno);
             free(bytes);
             return why;
         }
-        if (got == 0)
-            break;
         used += (size_t)got;
+        if (got == 0 || judged(kind, bytes, used, (size_t)got))
+            break;
     }
     bytes[used] = '\0';
     *data = bytes;
@@ -56,13 +106,13 @@ static const char *slurp(int fd, char **data, size_t *size)
     return NULL;
 }
 
-const char *file_read(const char *path, char **data, size_t *size)
+const char *file_read(const char *path, file_kind kind, char **data, size_t *size)
 {
-    const char *why;
-    int fd = open(path, O_RDONLY);
+    const char *why = NULL;
+    int fd = file_open(path, O_RDONLY, &why);
     if (fd < 0)
-        return strerror(errno);
-    why = slurp(fd, data, size);
+        return why;
+    why = slurp(fd, kind, data, size);
     close(fd);
     return why;
 }

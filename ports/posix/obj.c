@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define NONE UINT32_MAX
 
@@ -293,13 +294,11 @@ static int libraries(loader *l, token word)
     if (!text_rest(&l->t, &name))
         return text_fail(&l->t, word, "a file name is missing after it");
     if (memchr(name.start, ' ', name.length)) {
-        char *path = file_beside(l->t.file, name.start, name.length), *data;
-        size_t size;
+        char *path = file_beside(l->t.file, name.start, name.length);
+        struct stat st;
         if (!path)
             return error_memory(l->t.error);
-        whole = file_read(path, &data, &size) == NULL;
-        if (whole)
-            free(data);
+        whole = stat(path, &st) == 0 && !S_ISDIR(st.st_mode);
         free(path);
     }
     while (result == 0 && (whole || text_token(&line, &name))) {

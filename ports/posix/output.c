@@ -1,6 +1,7 @@
 /* output.c */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "output.h"
+#include "file.h"
 #include "png.h"
 
 #include <errno.h>
@@ -75,6 +76,7 @@ FILE *output_open(output_set *set, const char *path, tool_error *error)
 {
     struct output *o = &set->all[set->count];
     struct stat st;
+    const char *why = NULL;
     int exists = stat(path, &st) == 0, fd;
     memset(o, 0, sizeof *o);
     if (set->count == 0)
@@ -94,11 +96,11 @@ FILE *output_open(output_set *set, const char *path, tool_error *error)
         error_memory(error);
         return NULL;
     }
-    fd = exists && !S_ISREG(st.st_mode) ? open(path, O_WRONLY) : open_temporary(o);
+    fd = exists && !S_ISREG(st.st_mode) ? file_open(path, O_WRONLY, &why) : open_temporary(o);
     if (fd >= 0)
         o->file = fdopen(fd, "wb");
     if (!o->file) {
-        error_set(error, path, 0, NULL, 0, "can't be written: %s", strerror(errno));
+        error_set(error, path, 0, NULL, 0, "can't be written: %s", why ? why : strerror(errno));
         if (fd >= 0) {
             close(fd);
             if (o->temporary)

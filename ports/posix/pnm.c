@@ -158,7 +158,7 @@ static tyn_image *load(scene *s, const char *path, purpose use, uint32_t *top, t
     size_t size = 0;
     pnm p = {path, NULL, NULL, NULL, error};
     tyn_image *image;
-    const char *why = file_read(path, &data, &size);
+    const char *why = file_read(path, FILE_PICTURE, &data, &size);
     if (why) {
         error_set(error, path, 0, NULL, 0, "can't be read: %s", why);
         return NULL;
