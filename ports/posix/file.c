@@ -129,3 +129,58 @@ char *file_beside(const char *base, const char *name, size_t length)
     path[folder + length] = '\0';
     return path;
 }
+
+const char *file_base(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+char *file_behind_links(const char *path)
+{
+    char target[4096], *at = file_beside("", path, strlen(path));
+    for (int i = 0; at && i < 40; i++) {
+        ssize_t length = readlink(at, target, sizeof target);
+        char *next;
+        if (length < 0 || (size_t)length == sizeof target)
+            return at;
+        next = file_beside(at, target, (size_t)length);
+        free(at);
+        at = next;
+    }
+    if (at)
+        errno = ELOOP;
+    free(at);
+    return NULL;
+}
+
+int file_same_folder(const char *a, const char *b)
+{
+    const char *const paths[2] = {a, b};
+    struct stat st[2];
+    for (int i = 0; i < 2; i++) {
+        char *folder = file_beside(paths[i], ".", 1);
+        int good = folder && stat(folder, &st[i]) == 0;
+        free(folder);
+        if (!good)
+            return 0;
+    }
+    return st[0].st_dev == st[1].st_dev && st[0].st_ino == st[1].st_ino;
+}
+
+static int same_end(const char *a, const char *b)
+{
+    struct stat st[2];
+    if (stat(a, &st[0]) == 0 && stat(b, &st[1]) == 0)
+        return S_ISREG(st[0].st_mode) && st[0].st_dev == st[1].st_dev && st[0].st_ino == st[1].st_ino;
+    return strcmp(file_base(a), file_base(b)) == 0 && file_same_folder(a, b);
+}
+
+int file_same(const char *a, const char *b)
+{
+    char *ends[2] = {file_behind_links(a), file_behind_links(b)};
+    int same = strcmp(a, b) == 0 || (ends[0] && ends[1] && same_end(ends[0], ends[1]));
+    free(ends[0]);
+    free(ends[1]);
+    return same;
+}

@@ -19,4 +19,14 @@ int file_open(const char *path, int flags, const char **why);
 /* `name` as seen from the folder of the file `base`; malloc'ed, NULL without memory. */
 char *file_beside(const char *base, const char *name, size_t length);
 
+/* The name without folders. */
+const char *file_base(const char *path);
+
+/* Where all links lead, there or not yet; malloc'ed. NULL: errno says why. */
+char *file_behind_links(const char *path);
+
+/* Whether two names are those of one file, there or not yet; of two files in one folder. */
+int file_same(const char *a, const char *b);
+int file_same_folder(const char *a, const char *b);
+
 #endif
