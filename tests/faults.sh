@@ -20,6 +20,7 @@ light directional direction 1 -1 -0.3 irradiance 10 9 8
 quad a -20 0 20 b 20 0 20 c -20 0 -20 albedo 0.5 0.5 0.5
 box min -1 0 -1 max 1 3 1 albedo 0.6 0.5 0.4
 SCENE
+good=$(cat good.scene)
 small='--shadow-size 64 --threads 2'
 
 render() {
@@ -61,7 +62,7 @@ as() {
     frame) "$tyndall" post "$2" -o o/a.png ;;
     compare) "$tyndall" compare "$2" "$2" ;;
     depth | colour) "$tyndall" post "$1.frame" -o o/a.png ;;
-    *) { cat good.scene && echo "$line"; } >"$1.scene" && render "$1.scene" -o o/a.png ;;
+    *) printf '%s\n%s\n' "$good" "$line" >"$1.scene" && render "$1.scene" -o o/a.png ;;
     esac
 }
 
@@ -372,6 +373,69 @@ case $? in
     says 'a read-only disk' "a.pfm: can't be written: Read-only file system"
     ;;
 esac
+
+# ---- files made to cost squares of their length ----
+
+# brief NAME STATUS FILE: it takes a second of processor time at most.
+brief() {
+    (ulimit -t "$seconds" && as mesh "$3") >out.txt 2>err.txt
+    status=$?
+    empty "$1" "$([ $status -eq "$2" ] || { echo "status $status" && cat err.txt; })"
+}
+
+# shellcheck disable=SC2086
+if quiet 'hostile.c builds' $CC -O2 -o hostile "$tests/faults/hostile.c" && quiet 'hostile files' ./hostile .; then
+    seconds=1
+    case $CFLAGS in *sanitize*) seconds=10 ;; esac
+    brief 'pairs of one place in a hash table' 1 pairs.obj
+    says 'what is wrong with them' 'pairs.obj:3: '
+    brief 'names of one place in a hash table, one very long' 1 names.obj
+    says 'what is wrong with them' 'usemtl of an unknown material'
+    brief 'a library by 2000 names' 0 libraries.obj
+    brief 'a picture by 2000 names' 0 pictures.obj
+fi
+
+# ---- no memory ----
+
+rm -rf o && mkdir o
+# An allocation fails, and all after it.
+cat >all.scene <<'SCENE'
+tyndall-scene 1
+image 8 6
+camera position 0 2 8 target 0 1 0 fov_y 50 near 0.1 far 60
+background 0.2 0.3 0.5
+medium scatter 0.03 0.03 0.03 phase hg 0.5
+light directional direction 1 -1 -0.3 irradiance 10 9 8 texture gobo.ppm extent 3 3 up 0 1 0
+light point position 0 3 2 intensity 1 1 1
+quad a -20 0 20 b 20 0 20 c -20 0 -20 albedo 0.5 0.5 0.5
+mesh all.obj
+SCENE
+printf 'P3\n1 1\n9\n1 5 9\n' >gobo.ppm
+printf 'P2\n1 1\n9\n5\n' >mask.pgm
+printf 'newmtl m 1\nKd 1 1 1\nmap_Kd gobo.ppm\nmap_d mask.pgm\nnewmtl n\nd 0\n' >'all 1.mtl'
+printf 'mtllib all 1.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m 1\nf 1/1 2/1 3/1\nusemtl n\nf 1 2 3\n' >all.obj
+# shellcheck disable=SC2086
+if $CC $CFLAGS -Wl,--wrap=main,--wrap=malloc,--wrap=calloc,--wrap=realloc -o no_memory "$tests/faults/no_memory.c" "$B/libport.a" \
+    "$B/libtyndall.a" -pthread -lm 2>link.txt; then
+    step=5
+    case $CFLAGS in *sanitize*) step=1 ;; esac # and no leak
+    quiet 'render without memory' ./no_memory $step o render all.scene -o o/a.png --scatter o/s.pfm --surface o/u.pfm --depth o/d.pfm \
+        --frame o/P --shadow-size 8 --threads 2 --rectify projective --debug lines
+    rm -rf o && mkdir o
+    render all.scene -o in.pfm --frame in
+    quiet 'post without memory' ./no_memory $step o post in.frame -o o/a.rgb565 --scatter o/s.pfm --threads 2
+    rm -rf o && mkdir o
+else
+    skip 'no linker that wraps functions'
+fi
+if (ulimit -v 2000000 && "$tyndall" --version) >/dev/null 2>&1; then
+    (ulimit -v 2000000 && render good.scene -o o/a.png --size 32768x32768) 2>err.txt
+    empty 'a picture larger than memory: status 1' "$([ $? -eq 1 ] || echo "status $?")"
+    says 'a message' 'good.scene: out of memory'
+    none 'and no file'
+else
+    skip 'no limit of memory'
+fi
 
 # ---- what took seconds ----
 

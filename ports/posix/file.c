@@ -154,18 +154,28 @@ char *file_behind_links(const char *path)
     return NULL;
 }
 
+int file_key(const char *path, uintmax_t key[2])
+{
+    struct stat st;
+    if (stat(path, &st) != 0)
+        return -1;
+    key[0] = (uintmax_t)st.st_dev;
+    key[1] = (uintmax_t)st.st_ino;
+    return 0;
+}
+
 int file_same_folder(const char *a, const char *b)
 {
     const char *const paths[2] = {a, b};
-    struct stat st[2];
+    uintmax_t keys[2][2];
     for (int i = 0; i < 2; i++) {
         char *folder = file_beside(paths[i], ".", 1);
-        int good = folder && stat(folder, &st[i]) == 0;
+        int good = folder && file_key(folder, keys[i]) == 0;
         free(folder);
         if (!good)
             return 0;
     }
-    return st[0].st_dev == st[1].st_dev && st[0].st_ino == st[1].st_ino;
+    return memcmp(keys[0], keys[1], sizeof keys[0]) == 0;
 }
 
 static int same_end(const char *a, const char *b)

@@ -3,6 +3,7 @@
 #define TOOL_FILE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 typedef enum file_kind {
     FILE_TEXT,   /* holds no NUL */
@@ -24,6 +25,9 @@ const char *file_base(const char *path);
 
 /* Where all links lead, there or not yet; malloc'ed. NULL: errno says why. */
 char *file_behind_links(const char *path);
+
+/* What a file has alone, however it is called. -1: there is none. */
+int file_key(const char *path, uintmax_t key[2]);
 
 /* Whether two names are those of one file, there or not yet; of two files in one folder. */
 int file_same(const char *a, const char *b);
