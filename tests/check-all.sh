@@ -78,10 +78,11 @@ check_sanitizers() {
     if can $cc -fsanitize=address,undefined; then
         more=
         case $cc in clang) more=,float-cast-overflow,implicit-integer-sign-change ;; esac
-        variant asan $cc "-O1 -g -fsanitize=address,undefined$more -fno-sanitize-recover=all" -oracle
-        if [ -f tests/tool.sh ] && [ -x "$B/asan/tyndall" ]; then
-            part env B="$B/asan" CC=$cc MAKE="$MAKE" sh tests/tool.sh
-        fi
+        flags="-O1 -g -fsanitize=address,undefined$more -fno-sanitize-recover=all"
+        variant asan $cc "$flags" -oracle
+        for script in tool faults; do
+            [ ! -x "$B/asan/tyndall" ] || part env B="$B/asan" CC=$cc CFLAGS="$flags" MAKE="$MAKE" sh tests/$script.sh
+        done
     else
         skip "no address sanitizer in $cc"
     fi

@@ -11,18 +11,6 @@ mkdir -p "$work"
 cd "$work" || exit 1
 mkdir o
 
-# expect NAME STATUS COMMAND...: the exit status, and a message where it is not 0.
-expect() {
-    name=$1 want=$2
-    shift 2
-    "$@" >out.txt 2>err.txt
-    got=$?
-    if [ "$got" -ne "$want" ]; then fail "$name: status $got, not $want" - <err.txt; return 1; fi
-    if [ "$want" -eq 0 ] && [ -s err.txt ]; then fail "$name: stderr is not empty" - <err.txt; return 1; fi
-    if [ "$want" -ne 0 ] && ! [ -s err.txt ]; then fail "$name: no message"; return 1; fi
-    pass
-}
-
 # same NAME SCENE [OPTION...]: what post makes of a rendered frame is what render made of the scene.
 same() {
     name=$1 scene=$2

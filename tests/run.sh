@@ -13,7 +13,7 @@ export B CC CFLAGS MAKE
     echo $? >"$B/proofs.status"
 } &
 part "$B/tests" -accuracy -art -workers -fourier -door -door_maps -door_windows -rectify -path
-for script in proofs_calls tool post ports; do
+for script in proofs_calls tool faults post ports; do
     part sh tests/$script.sh
 done
 wait

@@ -35,6 +35,26 @@ quiet() {
     if quiet_said=$("$@" 2>&1); then pass; else fail "$quiet_name" "$quiet_said"; return 1; fi
 }
 
+# expect NAME STATUS COMMAND...: the exit status, and a message where it is not 0. Leaves out.txt and err.txt.
+expect() {
+    name=$1 want=$2
+    shift 2
+    "$@" >out.txt 2>err.txt
+    got=$?
+    if [ "$got" -ne "$want" ]; then fail "$name: status $got, not $want" - <err.txt; return 1; fi
+    if [ "$want" -eq 0 ] && [ -s err.txt ]; then fail "$name: stderr is not empty" - <err.txt; return 1; fi
+    if [ "$want" -ne 0 ] && ! [ -s err.txt ]; then fail "$name: no message"; return 1; fi
+    pass
+}
+
+# says NAME TEXT: the last message holds TEXT.
+says() {
+    while IFS= read -r said_line || [ -n "$said_line" ]; do
+        case $said_line in *"$2"*) pass && return ;; esac
+    done <err.txt
+    fail "$1" - <err.txt
+}
+
 have() {
     command -v "$1" >/dev/null 2>&1
 }

@@ -20,23 +20,6 @@ quad a -20 0 20 b 20 0 20 c -20 0 -20 albedo 0.5 0.5 0.5
 box min -1 0 -1 max 1 3 1 albedo 0.6 0.5 0.4
 SCENE
 
-# expect NAME STATUS COMMAND...: the exit status, and a message where it is not 0.
-expect() {
-    name=$1 want=$2
-    shift 2
-    "$@" >out.txt 2>err.txt
-    got=$?
-    if [ "$got" -ne "$want" ]; then fail "$name: status $got, not $want" - <err.txt; return 1; fi
-    if [ "$want" -eq 0 ] && [ -s err.txt ]; then fail "$name: stderr is not empty" - <err.txt; return 1; fi
-    if [ "$want" -ne 0 ] && ! [ -s err.txt ]; then fail "$name: no message"; return 1; fi
-    pass
-}
-
-# says NAME TEXT: the last message holds TEXT.
-says() {
-    if grep -F -q -- "$2" err.txt; then pass; else fail "$1" - <err.txt; fi
-}
-
 # none NAME: nothing but the inputs is left in the folder `o`.
 none() {
     left=$(ls -A o)

@@ -50,6 +50,6 @@ int command_render(int argc, char **argv)
     }
     progress_end();
     if (status != 0)
-        fprintf(stderr, "tyndall: %s\n", error.text);
+        error_report(&error, o.input);
     return status == 0 ? 0 : 1;
 }

@@ -12,9 +12,9 @@ static int check(const pfm *image, const char *path)
     size_t row = (size_t)image->width * (size_t)image->channels, count = row * (size_t)image->height;
     for (size_t i = 0; i < count; i++)
         if (!isfinite(image->values[i])) {
-            fprintf(stderr, "tyndall: %s: not a finite number at x %lu y %lu channel %lu\n", path,
-                    (unsigned long)(i % row / (size_t)image->channels), (unsigned long)(i / row),
-                    (unsigned long)(i % (size_t)image->channels));
+            error_say("%s: not a finite number at x %lu y %lu channel %lu", path,
+                      (unsigned long)(i % row / (size_t)image->channels), (unsigned long)(i / row),
+                      (unsigned long)(i % (size_t)image->channels));
             return -1;
         }
     return 0;
@@ -63,12 +63,12 @@ int command_compare(int argc, char **argv)
         return 0;
     }
     if (argc != 2) {
-        fprintf(stderr, "tyndall: usage: tyndall compare A.pfm B.pfm\n");
+        error_say("usage: tyndall compare A.pfm B.pfm");
         return 2;
     }
     for (int i = 0; i < 2 && status == 0; i++) {
         if (pfm_load(&images[i], argv[i], &error) != 0) {
-            fprintf(stderr, "tyndall: %s\n", error.text);
+            error_report(&error, argv[i]);
             status = 1;
         } else if (check(&images[i], argv[i]) != 0) {
             status = 1;
@@ -76,9 +76,9 @@ int command_compare(int argc, char **argv)
     }
     if (status == 0 && (images[0].width != images[1].width || images[0].height != images[1].height ||
                         images[0].channels != images[1].channels)) {
-        fprintf(stderr, "tyndall: %s is %ldx%ld with %ld channels, %s is %ldx%ld with %ld\n", argv[0], (long)images[0].width,
-                (long)images[0].height, (long)images[0].channels, argv[1], (long)images[1].width, (long)images[1].height,
-                (long)images[1].channels);
+        error_say("%s is %ldx%ld with %ld channels, %s is %ldx%ld with %ld", argv[0], (long)images[0].width,
+                  (long)images[0].height, (long)images[0].channels, argv[1], (long)images[1].width, (long)images[1].height,
+                  (long)images[1].channels);
         status = 1;
     }
     if (status == 0)

@@ -15,8 +15,8 @@ typedef struct tool_error {
 #define TOOL_PRINTF(f, a)
 #endif
 
-/* Sets the message and returns -1. line 0 and token NULL are left out. Control characters of the token become '?', so that a
- * file can't drive the terminal; long tokens are cut. */
+/* Sets the message and returns -1. line 0 and token NULL are left out; of long names and tokens a part is shown, so that there
+ * is always room for what is wrong; what is not printable UTF-8 becomes '?', so that a file can't drive the terminal. */
 int error_set(tool_error *e, const char *file, int32_t line, const char *token, size_t length, const char *format, ...)
     TOOL_PRINTF(6, 7);
 
@@ -24,5 +24,11 @@ int error_set(tool_error *e, const char *file, int32_t line, const char *token, 
 int error_wrap(tool_error *e, const char *file, int32_t line, const char *token, size_t length);
 
 int error_memory(tool_error *e);
+
+/* "tyndall: message" on stderr, one line, as printable as errors are. */
+void error_say(const char *format, ...) TOOL_PRINTF(1, 2);
+
+/* Says the error; `about` is the file to name where memory ran out. */
+void error_report(const tool_error *e, const char *about);
 
 #endif

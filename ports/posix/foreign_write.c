@@ -1,5 +1,6 @@
 /* foreign_write.c - numbers with nine digits are read back to the bit. */
 #include "foreign_write.h"
+#include "file.h"
 #include "pfm.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ typedef struct writer {
 
 const char *foreign_prefix_fault(const char *prefix)
 {
-    const char *slash = strrchr(prefix, '/'), *base = slash ? slash + 1 : prefix;
+    const char *base = file_base(prefix);
     if (*base == '\0')
         return "must end in the beginning of a file name";
     for (; *base; base++)
@@ -29,11 +30,14 @@ const char *foreign_prefix_fault(const char *prefix)
 int foreign_prefix_takes(const char *prefix, const char *name)
 {
     static const char *const endings[] = {".frame", ".depth.", ".colour.", ".light"};
-    size_t n = strlen(prefix);
-    if (strncmp(name, prefix, n) != 0)
+    const char *base = file_base(prefix), *other = file_base(name);
+    size_t n = strlen(base), folder = (size_t)(base - prefix);
+    int same_folder =
+        (folder == (size_t)(other - name) && strncmp(prefix, name, folder) == 0) || file_same_folder(prefix, name);
+    if (!same_folder || strncmp(other, base, n) != 0)
         return 0;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (strncmp(name + n, endings[i], strlen(endings[i])) == 0)
+        if (strncmp(other + n, endings[i], strlen(endings[i])) == 0)
             return 1;
     return 0;
 }
@@ -163,8 +167,7 @@ static int write_light(writer *w, int i, const scene_light *light, const render_
 
 int foreign_write(output_set *set, const char *prefix, const scene *s, const render_result *r, tool_error *error)
 {
-    const char *slash = strrchr(prefix, '/');
-    writer w = {set, prefix, slash ? slash + 1 : prefix, NULL, error};
+    writer w = {set, prefix, file_base(prefix), NULL, error};
     w.frame = open_one(&w, ".frame");
     if (!w.frame)
         return -1;

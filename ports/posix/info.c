@@ -1,5 +1,6 @@
 /* info.c - tyndall info */
 #include "commands.h"
+#include "error.h"
 #include "pool.h"
 
 #include <stdio.h>
@@ -34,7 +35,7 @@ int command_info(int argc, char **argv)
                    {"reference", TYN_PRESET_REFERENCE}};
     static const int32_t sizes[3][2] = {{320, 240}, {1280, 720}, {1920, 1080}};
     if (argc > 0) {
-        fprintf(stderr, "tyndall: info: unknown option '%s'\n", argv[0]);
+        error_say("info: unknown option '%s'", argv[0]);
         return 2;
     }
     printf("version %s\n", tyn_version());
@@ -53,8 +54,7 @@ int command_info(int argc, char **argv)
                 printf("memory_%s_%ldx%ld_bytes %lu\n", presets[p].name, (long)sizes[i][0], (long)sizes[i][1],
                        (unsigned long)bytes);
             else
-                fprintf(stderr, "tyndall: %s at %ldx%ld: %s\n", presets[p].name, (long)sizes[i][0], (long)sizes[i][1],
-                        tyn_status_name(status));
+                error_say("%s at %ldx%ld: %s", presets[p].name, (long)sizes[i][0], (long)sizes[i][1], tyn_status_name(status));
         }
     return 0;
 }

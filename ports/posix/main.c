@@ -1,5 +1,6 @@
 /* main.c - the commands of the tool. */
 #include "commands.h"
+#include "error.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -47,7 +48,7 @@ static int run(int argc, char **argv)
         return command_showcase(argc - 2, argv + 2);
     if (strcmp(command, "bench") == 0)
         return command_bench(argc - 2, argv + 2);
-    fprintf(stderr, "tyndall: '%s': unknown command; see tyndall --help\n", command);
+    error_say("'%.500s': unknown command; see tyndall --help", command);
     return 2;
 }
 
@@ -67,7 +68,7 @@ int main(int argc, char **argv)
     status = run(argc, argv);
     /* What was printed is output too: a full disk behind stdout is a failure. */
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "tyndall: stdout: can't be written\n");
+        error_say("stdout: can't be written");
         return status ? status : 1;
     }
     return status;

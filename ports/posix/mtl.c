@@ -5,64 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-int mtl_set_init(mtl_set *set)
-{
-    memset(set, 0, sizeof *set);
-    set->chains = malloc(MTL_CHAINS * sizeof *set->chains);
-    if (!set->chains)
-        return -1;
-    for (int i = 0; i < MTL_CHAINS; i++)
-        set->chains[i] = -1;
-    return 0;
-}
-
 void mtl_set_free(mtl_set *set)
 {
-    for (int32_t i = 0; i < set->count; i++)
-        free(set->all[i].name);
-    for (int32_t i = 0; i < set->file_count; i++)
-        free(set->files[i]);
+    names_free(&set->names);
+    names_free(&set->files);
     free(set->all);
-    free(set->files);
-    free(set->chains);
     memset(set, 0, sizeof *set);
-}
-
-static void *grow(void *block, int32_t *capacity, size_t item)
-{
-    int32_t room = *capacity < INT32_MAX / 4 ? *capacity * 2 + 16 : 0;
-    void *more = room && (size_t)room < SIZE_MAX / item ? realloc(block, (size_t)room * item) : NULL;
-    if (more)
-        *capacity = room;
-    return more;
 }
 
 int32_t mtl_find(mtl_set *set, token name)
 {
-    uint32_t hash = 2166136261u;
-    mtl *m;
-    for (size_t i = 0; i < name.length; i++)
-        hash = (hash ^ (unsigned char)name.start[i]) * 16777619u;
-    hash = (hash ^ hash >> 16) % MTL_CHAINS;
-    for (int32_t i = set->chains[hash]; i >= 0; i = set->all[i].next)
-        if (token_is(name, set->all[i].name))
-            return i;
-    if (set->count == set->capacity) {
-        void *more = grow(set->all, &set->capacity, sizeof *set->all);
+    int32_t count = set->names.count, at = names_find(&set->names, name.start, name.length);
+    if (at >= set->capacity) {
+        mtl *more = realloc(set->all, (size_t)set->names.capacity * sizeof *more);
         if (!more)
             return -1;
         set->all = more;
+        set->capacity = set->names.capacity;
     }
-    m = &set->all[set->count];
-    memset(m, 0, sizeof *m);
-    m->name = malloc(name.length + 1);
-    if (!m->name)
-        return -1;
-    memcpy(m->name, name.start, name.length);
-    m->name[name.length] = '\0';
-    m->next = set->chains[hash];
-    set->chains[hash] = set->count;
-    return set->count++;
+    if (at == count)
+        memset(&set->all[at], 0, sizeof *set->all);
+    return at;
 }
 
 static const tyn_image *map(text *t, token statement, scene *s, texture_cache *textures, int mask)
@@ -173,24 +136,15 @@ int mtl_load(mtl_set *set, const char *path, scene *s, texture_cache *textures, 
 {
     text t;
     int result;
-    for (int32_t i = 0; i < set->file_count; i++)
-        if (strcmp(set->files[i], path) == 0)
-            return 0;
-    if (set->file_count == set->file_capacity) {
-        void *more = grow(set->files, &set->file_capacity, sizeof *set->files);
-        if (!more)
-            return error_memory(error);
-        set->files = more;
-    }
+    int32_t count = set->files.count, at = count;
+    uintmax_t key[2];
+    if (file_key(path, key) == 0)
+        at = names_find(&set->files, key, sizeof key);
+    if (at < count)
+        return at < 0 ? error_memory(error) : 0;
     if (text_open(&t, path, TEXT_OBJ, error) != 0)
         return -1;
     result = statements(set, &t, s, textures);
     text_close(&t);
-    if (result == 0) {
-        char *copy = malloc(strlen(path) + 1);
-        if (!copy)
-            return error_memory(error);
-        set->files[set->file_count++] = strcpy(copy, path);
-    }
     return result;
 }

@@ -7,8 +7,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define NONE UINT32_MAX
+#define TRIES 64 /* in the hash table: pairs made to collide become vertices of their own, and cost no squares */
 
 /* The triangles of one material, either those with texture coordinates or those without. A vertex is a pair of numbers in the
  * file's lists of v and vt (NONE without). */
@@ -38,6 +40,7 @@ typedef struct loader {
     beyond far_v, far_vt, far_vn;
     part *parts;
     int32_t part_count;
+    size_t part_capacity;
     int32_t *part_of; /* two per material and two for none: part number, -1: none */
     int32_t part_of_count;
     uint32_t (*face)[2]; /* corners of the line at hand */
@@ -105,12 +108,12 @@ static int grow_table(loader *l)
 static uint32_t vertex_of(loader *l, uint32_t number, uint32_t v, uint32_t vt)
 {
     part *p = &l->parts[number];
-    int failed = 0;
+    int failed = 0, tries = 0;
     size_t slot;
     if (2 * l->table_used >= l->table_size && grow_table(l) != 0)
         return NONE;
     slot = hash_of(number, v, vt) & (l->table_size - 1);
-    for (; l->table[slot]; slot = (slot + 1) & (l->table_size - 1)) {
+    for (; l->table[slot] && tries < TRIES; slot = (slot + 1) & (l->table_size - 1), tries++) {
         uint32_t at = l->table[slot] - 1;
         if (l->table_part[slot] == number && p->pairs[at][0] == v && p->pairs[at][1] == vt)
             return at;
@@ -120,9 +123,12 @@ static uint32_t vertex_of(loader *l, uint32_t number, uint32_t v, uint32_t vt)
         return NONE;
     p->pairs[p->vertices][0] = v;
     p->pairs[p->vertices][1] = vt;
-    l->table[slot] = (uint32_t)++p->vertices;
-    l->table_part[slot] = number;
-    l->table_used++;
+    p->vertices++;
+    if (tries < TRIES) {
+        l->table[slot] = (uint32_t)p->vertices;
+        l->table_part[slot] = number;
+        l->table_used++;
+    }
     return (uint32_t)(p->vertices - 1);
 }
 
@@ -141,14 +147,15 @@ static int32_t part_for(loader *l, int textured)
         l->part_of_count = room;
     }
     if (l->part_of[slot] < 0) {
-        /* Parts come rarely: one more each time is fine up to the number of materials. */
-        part *more = realloc(l->parts, ((size_t)l->part_count + 1) * sizeof *more);
-        if (!more)
+        int failed = 0;
+        part *p = reserve(l->parts, &l->part_capacity, (size_t)l->part_count + 1, sizeof *p, &failed);
+        l->parts = p;
+        if (failed)
             return -1;
-        l->parts = more;
-        memset(&more[l->part_count], 0, sizeof *more);
-        more[l->part_count].material = l->current;
-        more[l->part_count].textured = textured;
+        p += l->part_count;
+        memset(p, 0, sizeof *p);
+        p->material = l->current;
+        p->textured = textured;
         l->part_of[slot] = l->part_count++;
     }
     return l->part_of[slot];
@@ -293,13 +300,11 @@ static int libraries(loader *l, token word)
     if (!text_rest(&l->t, &name))
         return text_fail(&l->t, word, "a file name is missing after it");
     if (memchr(name.start, ' ', name.length)) {
-        char *path = file_beside(l->t.file, name.start, name.length), *data;
-        size_t size;
+        char *path = file_beside(l->t.file, name.start, name.length);
+        struct stat st;
         if (!path)
             return error_memory(l->t.error);
-        whole = file_read(path, &data, &size) == NULL;
-        if (whole)
-            free(data);
+        whole = stat(path, &st) == 0 && !S_ISDIR(st.st_mode);
         free(path);
     }
     while (result == 0 && (whole || text_token(&line, &name))) {
@@ -358,10 +363,11 @@ static int check_beyond(const loader *l, const beyond *far, size_t count, const 
 
 static int check_end(const loader *l)
 {
-    for (int32_t i = 0; i < l->materials.count; i++) {
+    for (int32_t i = 0; i < l->materials.names.count; i++) {
         const mtl *m = &l->materials.all[i];
+        const struct name *name = &l->materials.names.all[i];
         if (!m->defined)
-            return error_set(l->t.error, l->t.file, m->used_line, m->name, strlen(m->name), "usemtl of an unknown material");
+            return error_set(l->t.error, l->t.file, m->used_line, name->text, name->length, "usemtl of an unknown material");
     }
     if (check_beyond(l, &l->far_v, l->v_count, "v") != 0 || check_beyond(l, &l->far_vt, l->vt_count, "vt") != 0)
         return -1;
@@ -424,8 +430,6 @@ int obj_load(scene *s, const char *path, const obj_place *place, texture_cache *
     l.s = s;
     l.textures = textures;
     l.current = -1;
-    if (mtl_set_init(&l.materials) != 0)
-        return error_memory(error);
     if (text_open(&l.t, path, TEXT_OBJ, error) == 0) {
         result = statements(&l);
         if (result == 0)

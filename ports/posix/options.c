@@ -1,5 +1,6 @@
 /* options.c */
 #include "options.h"
+#include "file.h"
 #include "foreign_write.h"
 
 #include <errno.h>
@@ -110,9 +111,9 @@ static const char *const later[] = {"--frames", NULL};
 static int bad(const char *option, const char *value, const char *why)
 {
     if (value)
-        fprintf(stderr, "tyndall: %s '%s': %s\n", option, value, why);
+        error_say("%.500s '%.500s': %s", option, value, why);
     else
-        fprintf(stderr, "tyndall: %s: %s\n", option, why);
+        error_say("%.500s: %s", option, why);
     return -1;
 }
 
@@ -263,8 +264,8 @@ static int check_names(const options *o)
     const char *names[4] = {o->out, o->scatter, o->surface, o->depth};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < i; k++)
-            if (names[i] && names[k] && strcmp(names[i], names[k]) == 0)
-                return bad("-o, --scatter, --surface, --depth", names[i], "is given twice");
+            if (names[i] && names[k] && file_same(names[i], names[k]))
+                return bad("-o, --scatter, --surface, --depth", names[i], "is one file given twice");
     for (int i = 0; i < 4 && o->frame; i++)
         if (names[i] && foreign_prefix_takes(o->frame, names[i]))
             return bad("--frame", names[i], "is one of its own files");
@@ -444,5 +445,6 @@ void options_help(options_command command)
         "  --isa I            scalar, sse2, avx2, avx512, neon or wasm; default: the best there is. All give the same bytes\n"
         "  --stats            print one \"name value\" a line\n"
         "\n"
-        "A file appears when it is complete, or not at all. Exit status: 0 complete, 1 bad input, 2 bad usage.\n");
+        "All outputs appear when all are complete, or none; what was read was read before, so one may take an input's place.\n"
+        "Exit status: 0 complete, 1 bad input, 2 bad usage.\n");
 }

@@ -1,19 +1,25 @@
 /* output.c */
-#define _XOPEN_SOURCE 700 /* realpath */
+#define _XOPEN_SOURCE 700 /* S_ISVTX */
 #include "output.h"
+#include "file.h"
 #include "png.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* What a signal must remove. Set before the file is made and cleared after it is gone; the strings outlive the entry. */
+/* What a signal must remove; it holds signals back who changes it, or has files halfway to their places. */
 static const char *volatile unfinished[OUTPUT_MAX];
+
+static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
+enum { SIGNALS = sizeof signals / sizeof *signals };
 
 static void on_signal(int number)
 {
@@ -26,15 +32,28 @@ static void on_signal(int number)
 
 static void catch_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
     struct sigaction action, old;
     memset(&action, 0, sizeof action);
     action.sa_handler = on_signal;
-    sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        if (sigaction(numbers[i], NULL, &old) == 0 && old.sa_handler == SIG_DFL) /* nohup's SIG_IGN stays */
-            sigaction(numbers[i], &action, NULL);
+    sigfillset(&action.sa_mask);
+    for (int i = 0; i < SIGNALS; i++)
+        if (sigaction(signals[i], NULL, &old) == 0 && old.sa_handler == SIG_DFL) /* nohup's SIG_IGN stays */
+            sigaction(signals[i], &action, NULL);
     signal(SIGXFSZ, SIG_IGN); /* a file too large for its limit is a write error then, with a message */
+}
+
+static void hold_signals(sigset_t *old)
+{
+    sigset_t ours;
+    sigemptyset(&ours);
+    for (int i = 0; i < SIGNALS; i++)
+        sigaddset(&ours, signals[i]);
+    pthread_sigmask(SIG_BLOCK, &ours, old);
+}
+
+static void let_signals(const sigset_t *old)
+{
+    pthread_sigmask(SIG_SETMASK, old, NULL);
 }
 
 output_kind output_kind_of(const char *path)
@@ -53,121 +72,187 @@ output_kind output_kind_of(const char *path)
     return OUTPUT_UNKNOWN;
 }
 
-static int open_temporary(struct output *o)
+/* Beside the file, by a name that is never too long; of one of characters none is cut in two. */
+static int open_temporary(struct output *o, int number)
 {
-    size_t room = strlen(o->path) + 48;
+    const char *base = file_base(o->path);
+    size_t room = strlen(o->path) + 48, shown = strlen(base) < 100 ? strlen(base) : 100;
+    int fd = -1;
+    while (shown > 0 && ((unsigned char)base[shown] & 0xc0) == 0x80)
+        shown--;
     o->temporary = malloc(room);
-    if (!o->temporary)
+    o->old = malloc(room);
+    if (!o->temporary || !o->old)
         return -1;
     for (int i = 0; i < 100; i++) {
-        int fd;
-        snprintf(o->temporary, room, "%s.part-%ld-%d", o->path, (long)getpid(), i);
+        sigset_t before;
+        snprintf(o->temporary, room, "%.*s.part-%ld-%d", (int)(base - o->path + (ptrdiff_t)shown), o->path, (long)getpid(), i);
+        snprintf(o->old, room, "%s.old", o->temporary);
+        hold_signals(&before);
         fd = open(o->temporary, O_WRONLY | O_CREAT | O_EXCL, 0666);
         if (fd >= 0)
-            return fd;
-        if (errno != EEXIST)
+            unfinished[number] = o->temporary;
+        let_signals(&before);
+        if (fd >= 0 || errno != EEXIST)
             break;
     }
-    return -1;
+    return fd;
+}
+
+/* A file of somebody else in a folder as /tmp can be written, but not replaced. */
+static int stuck(const char *path, const struct stat *st)
+{
+    struct stat above;
+    char *folder = file_beside(path, ".", 1);
+    int yes = folder && geteuid() != 0 && stat(folder, &above) == 0 && (above.st_mode & S_ISVTX) && st->st_uid != geteuid() &&
+              above.st_uid != geteuid();
+    free(folder);
+    return yes;
+}
+
+static const char *open_file(struct output *o, int number, const char *path)
+{
+    struct stat st;
+    const char *why = NULL;
+    int fd, exists = stat(path, &st) == 0;
+    if (exists && S_ISDIR(st.st_mode))
+        return "is a folder";
+    if (exists && !S_ISREG(st.st_mode)) {
+        o->path = file_beside("", path, strlen(path));
+        fd = o->path ? file_open(path, O_WRONLY, &why) : -1;
+    } else {
+        o->path = file_behind_links(path);
+        if (!o->path)
+            return strerror(errno);
+        if (exists && access(o->path, W_OK) != 0)
+            return strerror(errno);
+        if (exists && stuck(o->path, &st))
+            return strerror(EPERM);
+        fd = open_temporary(o, number);
+        if (fd >= 0 && exists)
+            (void)fchmod(fd, st.st_mode & 0777); /* not on all file systems */
+    }
+    if (fd >= 0 && !(o->file = fdopen(fd, "wb"))) {
+        why = strerror(errno);
+        close(fd);
+    }
+    return o->file ? NULL : why ? why : strerror(errno);
+}
+
+static void discard(output_set *set, int i)
+{
+    struct output *o = &set->all[i];
+    if (o->file)
+        fclose(o->file);
+    if (unfinished[i])
+        unlink(o->temporary);
+    unfinished[i] = NULL;
+    free(o->temporary);
+    free(o->old);
+    free(o->path);
+    memset(o, 0, sizeof *o);
 }
 
 FILE *output_open(output_set *set, const char *path, tool_error *error)
 {
     struct output *o = &set->all[set->count];
-    struct stat st;
-    int exists = stat(path, &st) == 0, fd;
+    const char *why = NULL;
     memset(o, 0, sizeof *o);
     if (set->count == 0)
         catch_signals();
-    if (exists && S_ISDIR(st.st_mode)) {
-        error_set(error, path, 0, NULL, 0, "can't be written: is a folder");
+    for (int i = 0; i < set->count && !why; i++)
+        why = file_same(set->all[i].path, path) ? "is another output too" : NULL;
+    if (!why)
+        why = open_file(o, set->count, path);
+    if (why) {
+        error_set(error, path, 0, NULL, 0, "can't be written: %s", why);
+        discard(set, set->count);
         return NULL;
     }
-    if (exists && S_ISREG(st.st_mode)) {
-        o->path = realpath(path, NULL); /* through a link: the file behind it is replaced, not the link */
-    } else {
-        o->path = malloc(strlen(path) + 1);
-        if (o->path)
-            strcpy(o->path, path);
-    }
-    if (!o->path) {
-        error_memory(error);
-        return NULL;
-    }
-    fd = exists && !S_ISREG(st.st_mode) ? open(path, O_WRONLY) : open_temporary(o);
-    if (fd >= 0)
-        o->file = fdopen(fd, "wb");
-    if (!o->file) {
-        error_set(error, path, 0, NULL, 0, "can't be written: %s", strerror(errno));
-        if (fd >= 0) {
-            close(fd);
-            if (o->temporary)
-                unlink(o->temporary);
-        }
-        free(o->temporary);
-        free(o->path);
-        return NULL;
-    }
-    unfinished[set->count] = o->temporary;
     set->count++;
     return o->file;
 }
 
-int output_failed(const output_set *set, const FILE *file, tool_error *error)
+static int failed(const struct output *o, tool_error *error)
 {
-    int why = errno;
-    for (int i = 0; i < set->count; i++)
-        if (set->all[i].file == file)
-            return error_set(error, set->all[i].path, 0, NULL, 0, "can't be written: %s", strerror(why));
-    return error_set(error, "output", 0, NULL, 0, "can't be written: %s", strerror(why));
+    return error_set(error, o->path, 0, NULL, 0, "can't be written: %s", strerror(errno));
 }
 
-static void release(output_set *set)
+int output_failed(const output_set *set, const FILE *file, tool_error *error)
 {
+    int i = 0;
+    while (i + 1 < set->count && set->all[i].file != file)
+        i++;
+    return failed(&set->all[i], error);
+}
+
+/* A new file in its place. The old one is kept by its other name, as more than one can't come at once, and a later one may
+ * fail. Where there can be no such name the old one is lost then. */
+static int put(struct output *o, int keep)
+{
+    if (!o->temporary)
+        return 0;
+    o->kept = keep && link(o->path, o->old) == 0;
+    o->fresh = !o->kept && access(o->path, F_OK) != 0;
+    if (rename(o->temporary, o->path) == 0)
+        return 0;
+    if (o->kept)
+        unlink(o->old);
+    return -1;
+}
+
+static void put_back(const struct output *o)
+{
+    if (o->kept)
+        rename(o->old, o->path);
+    else if (o->fresh)
+        unlink(o->path);
+}
+
+static int put_all(output_set *set, tool_error *error)
+{
+    for (int i = 0; i < set->count; i++)
+        if (put(&set->all[i], i + 1 < set->count) != 0) {
+            failed(&set->all[i], error);
+            while (i-- > 0)
+                put_back(&set->all[i]);
+            return -1;
+        }
     for (int i = 0; i < set->count; i++) {
+        if (set->all[i].kept)
+            unlink(set->all[i].old);
         unfinished[i] = NULL;
-        free(set->all[i].temporary);
-        free(set->all[i].path);
     }
-    set->count = 0;
+    return 0;
 }
 
 int output_commit(output_set *set, tool_error *error)
 {
-    for (int i = 0; i < set->count; i++) {
+    sigset_t before;
+    int result = 0;
+    for (int i = 0; i < set->count && result == 0; i++) {
         FILE *file = set->all[i].file;
-        if (fflush(file) != 0 || ferror(file)) {
-            output_failed(set, file, error);
-            output_abort(set);
-            return -1;
+        int lost = ferror(file); /* whose errno is long gone */
+        set->all[i].file = NULL;
+        errno = 0;
+        if (fclose(file) != 0 || lost) {
+            errno = errno ? errno : EIO;
+            result = failed(&set->all[i], error);
         }
     }
-    for (int i = 0; i < set->count; i++) {
-        struct output *o = &set->all[i];
-        int closed = fclose(o->file);
-        o->file = NULL;
-        if (closed != 0 || (o->temporary && rename(o->temporary, o->path) != 0)) {
-            error_set(error, o->path, 0, NULL, 0, "can't be written: %s", strerror(errno));
-            for (int k = 0; k < i; k++) /* those that have their name already */
-                if (set->all[k].temporary)
-                    unlink(set->all[k].path);
-            output_abort(set);
-            return -1;
-        }
+    if (result == 0) {
+        hold_signals(&before);
+        result = put_all(set, error);
+        let_signals(&before);
     }
-    release(set);
-    return 0;
+    output_abort(set);
+    return result;
 }
 
 void output_abort(output_set *set)
 {
-    for (int i = 0; i < set->count; i++) {
-        if (set->all[i].file)
-            fclose(set->all[i].file);
-        if (set->all[i].temporary)
-            unlink(set->all[i].temporary);
-    }
-    release(set);
+    while (set->count > 0)
+        discard(set, --set->count);
 }
 
 static int write_ppm(FILE *file, const uint8_t *rgba, int32_t width, int32_t height)

@@ -17,18 +17,21 @@ output_kind output_kind_of(const char *path);
 typedef struct output_set {
     struct output {
         char *path, *temporary; /* temporary NULL: a device or pipe, written in place */
+        char *old;              /* what the file that is replaced is called meanwhile */
+        int kept, fresh;        /* it is called so; there was none */
         FILE *file;
     } all[OUTPUT_MAX];
     int count;
 } output_set;
 
-/* Opens one more; before the work, so that a folder without permission is known at once. NULL: error set. */
+/* Opens one more; before the work, so that a folder without permission is known at once. NULL: error set. A new file gets the
+ * mode of the one that it replaces. */
 FILE *output_open(output_set *set, const char *path, tool_error *error);
 
 /* The message for a failed write to the last opened or to a given file, by errno. Returns -1. */
 int output_failed(const output_set *set, const FILE *file, tool_error *error);
 
-/* Closes and renames all. -1: error set, and none of them is left. */
+/* Closes and renames all. -1: error set, and all is as it was before. */
 int output_commit(output_set *set, tool_error *error);
 
 /* Removes what was written. Harmless after output_commit. */

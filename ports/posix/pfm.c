@@ -88,7 +88,7 @@ int pfm_load(pfm *image, const char *path, tool_error *error)
     char *data = NULL;
     size_t size = 0;
     int result;
-    const char *why = file_read(path, &data, &size);
+    const char *why = file_read(path, FILE_PICTURE, &data, &size);
     memset(image, 0, sizeof *image);
     if (why)
         return error_set(error, path, 0, NULL, 0, "can't be read: %s", why);

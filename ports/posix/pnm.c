@@ -158,7 +158,7 @@ static tyn_image *load(scene *s, const char *path, purpose use, uint32_t *top, t
     size_t size = 0;
     pnm p = {path, NULL, NULL, NULL, error};
     tyn_image *image;
-    const char *why = file_read(path, &data, &size);
+    const char *why = file_read(path, FILE_PICTURE, &data, &size);
     if (why) {
         error_set(error, path, 0, NULL, 0, "can't be read: %s", why);
         return NULL;
@@ -192,41 +192,34 @@ tyn_image *pnm_load_counts(scene *s, const char *path, int32_t *maxval, tool_err
 
 tyn_image *texture_load(texture_cache *cache, scene *s, const char *path, int mask, tool_error *error)
 {
-    struct texture_entry *e;
-    for (int32_t i = 0; i < cache->count; i++)
-        if (cache->entries[i].mask == mask && strcmp(cache->entries[i].path, path) == 0)
-            return cache->entries[i].image;
-    if (cache->count == cache->capacity) {
-        int32_t room = cache->capacity < INT32_MAX / 4 ? cache->capacity * 2 + 16 : 0;
-        void *more = room ? realloc(cache->entries, (size_t)room * sizeof *cache->entries) : NULL;
+    uintmax_t key[3] = {0, 0, (uintmax_t)mask};
+    int32_t count = cache->files.count, at;
+    int there = file_key(path, key) == 0; /* else reading it will tell */
+    at = there ? names_find(&cache->files, key, sizeof key) : count;
+    if (at < 0) {
+        error_memory(error);
+        return NULL;
+    }
+    if (there && at >= cache->capacity) {
+        tyn_image **more = realloc(cache->images, (size_t)cache->files.capacity * sizeof *more);
         if (!more) {
             error_memory(error);
             return NULL;
         }
-        cache->entries = more;
-        cache->capacity = room;
+        cache->images = more;
+        cache->capacity = cache->files.capacity;
     }
-    e = &cache->entries[cache->count];
-    e->mask = mask;
-    e->path = malloc(strlen(path) + 1);
-    if (!e->path) {
-        error_memory(error);
-        return NULL;
-    }
-    strcpy(e->path, path);
-    e->image = mask ? pnm_load_mask(s, path, error) : pnm_load_colour(s, path, error);
-    if (!e->image) {
-        free(e->path);
-        return NULL;
-    }
-    cache->count++;
-    return e->image;
+    if (at < count)
+        return cache->images[at];
+    tyn_image *image = mask ? pnm_load_mask(s, path, error) : pnm_load_colour(s, path, error);
+    if (there)
+        cache->images[at] = image;
+    return image;
 }
 
 void texture_cache_free(texture_cache *cache)
 {
-    for (int32_t i = 0; i < cache->count; i++)
-        free(cache->entries[i].path);
-    free(cache->entries);
+    names_free(&cache->files);
+    free(cache->images);
     memset(cache, 0, sizeof *cache);
 }

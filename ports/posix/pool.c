@@ -2,6 +2,7 @@
 #include "pool.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -86,6 +87,8 @@ static void run(void *context, tyn_job job, void *argument, int32_t count)
 pool *pool_create(int32_t workers)
 {
     pool *p = calloc(1, sizeof *p);
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGXCPU};
+    sigset_t ours, old;
     if (!p)
         return NULL;
     pthread_mutex_init(&p->mutex, NULL);
@@ -94,6 +97,11 @@ pool *pool_create(int32_t workers)
     p->executor.run = run;
     p->executor.context = p;
     p->executor.workers = 1;
+    /* These are for the thread that knows what to do then. */
+    sigemptyset(&ours);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        sigaddset(&ours, numbers[i]);
+    pthread_sigmask(SIG_BLOCK, &ours, &old);
     for (int32_t i = 1; i < workers && i < TYN_MAX_WORKERS; i++) {
         p->workers[i].pool = p;
         p->workers[i].number = i;
@@ -101,6 +109,7 @@ pool *pool_create(int32_t workers)
             break;
         p->executor.workers = i + 1;
     }
+    pthread_sigmask(SIG_SETMASK, &old, NULL);
     return p;
 }
 

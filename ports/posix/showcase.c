@@ -126,17 +126,17 @@ static int run_picture(const struct picture *picture, const char *directory, poo
 int command_showcase(int argc, char **argv)
 {
     const char *directory = argc > 0 ? argv[0] : "build";
-    int known = directory[0] != '-';
+    int known = directory[0] != '-' && directory[0] != '\0';
     for (int i = 1; i < argc; i++) {
         known = known && find(argv[i]) != NULL;
     }
     if (!known) {
-        fprintf(stderr, "tyndall: usage: tyndall showcase [DIR [NAME...]]\n");
+        error_say("usage: tyndall showcase [DIR [NAME...]]");
         return 2;
     }
     pool *threads = pool_create(pool_default_workers());
     if (threads == NULL) {
-        fprintf(stderr, "tyndall: out of memory\n");
+        error_say("out of memory");
         return 1;
     }
     mkdir(directory, 0777); /* if that fails, writing says why */
@@ -150,7 +150,7 @@ int command_showcase(int argc, char **argv)
     }
     pool_free(threads);
     if (status != 0) {
-        fprintf(stderr, "tyndall: %s\n", error.text);
+        error_report(&error, directory);
         return 1;
     }
     printf("pictures: %s/*.png\n", directory);

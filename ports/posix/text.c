@@ -16,7 +16,7 @@ int text_open(text *t, const char *file, text_kind kind, tool_error *error)
     t->file = file;
     t->kind = kind;
     t->error = error;
-    why = file_read(file, &t->data, &size);
+    why = file_read(file, FILE_TEXT, &t->data, &size);
     if (why)
         return error_set(error, file, 0, NULL, 0, "can't be read: %s", why);
     zero = memchr(t->data, '\0', size);
