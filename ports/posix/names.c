@@ -15,8 +15,6 @@ static int32_t nearest(const name_set *n, const char *text, size_t length)
     int32_t at = n->root;
     while (at < 0) {
         const struct name *node = &n->all[~at];
-        if (node->byte > length) /* all below are longer: any will do to see where the text parts */
-            return ~at;
         at = node->below[side(node, text, length)];
     }
     return at;
