@@ -1,7 +1,6 @@
-/* no_memory.c - the tool with its nth allocation failing, and all after it, for every n: no_memory FOLDER COMMAND... Linked
- * with
- * --wrap=main,malloc,calloc,realloc. Each run ends with status 1 and a message, and leaves nothing in FOLDER; the last one,
- * when no allocation fails, with status 0. */
+/* no_memory.c - the tool with its nth allocation failing, and all after it, for every n: no_memory FOLDER COMMAND... Each run
+ * ends with status 1 and a message, and leaves nothing in FOLDER; the last one, when no allocation fails, with status 0. Linked
+ * with --wrap=main,malloc,calloc,realloc. */
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
