@@ -108,7 +108,7 @@ check_valgrind() {
     fi
 }
 
-# Of src/: goals 95 % of lines, 85 % of branches. build/check/coverage.txt lists what was not run.
+# Of src/: goals 95 % of lines, 85 % of branches. build/check/coverage.txt lists what was not run, tests/coverage.txt says why.
 check_coverage() {
     if ! have gcovr; then
         skip 'no gcovr'

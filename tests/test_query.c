@@ -291,6 +291,16 @@ static void test_executors(void)
     rig_free(r);
 }
 
+static void gobo(tyn_light *light)
+{
+    static tyn_image pane;
+    pane = window();
+    light->texture_count = 1;
+    light->textures = &pane;
+    light->up[1] = 1;
+    light->extent[0] = light->extent[1] = 20;
+}
+
 static tyn_status spoil(tyn_frame *f, tyn_light *light, tyn_medium *medium, tyn_executor *executor, int n)
 {
     switch (n) {
@@ -317,6 +327,10 @@ static tyn_status spoil(tyn_frame *f, tyn_light *light, tyn_medium *medium, tyn_
         CASE(16, TYN_E_EXECUTOR, f->executor = executor; executor->run = NULL)
         CASE(17, TYN_E_EXECUTOR, f->executor = executor; executor->workers = TYN_MAX_WORKERS + 1)
         CASE(18, TYN_E_EXECUTOR, f->executor = executor; executor->workers = 0)
+        CASE(19, TYN_E_CAMERA, f->camera.position[0] = 1e30f)
+        CASE(20, TYN_E_NULL, light->texture_count = 1; light->textures = NULL)
+        CASE(21, TYN_E_LIGHT, gobo(light); memcpy(light->up, light->direction, sizeof light->up))
+        CASE(22, TYN_E_LIGHT, gobo(light); light->extent[0] = 0)
 #undef CASE
     default:
         return TYN_OK;
