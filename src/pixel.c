@@ -19,10 +19,6 @@
 typedef struct run {
     int32_t x, y, count;
     const float *depth; /* as in the depth image */
-    /* of the images what is read next: depth of the row below, and of this one colour and target. Bytes of a pixel; 0: no image
-     */
-    const uint8_t *ahead[3];
-    int32_t ahead_bytes[3];
     float *nearness;    /* a length along the ray times this is a depth relative to far */
     float *reach;       /* metres to where the ray ends: the surface, or the frame's max_distance; 0: no ray */
     float *cosine;      /* of the ray and the way to the light: directional lights */

@@ -28,14 +28,6 @@ render() {
     "$tyndall" render "$@" $small
 }
 
-# none NAME: nothing is left in the folder `o`.
-none() {
-    left=$(ls -A o)
-    empty "$1" "$left"
-    rm -rf o
-    mkdir o
-}
-
 # repeated TEXT COUNT
 repeated() {
     awk -v text="$1" -v count="$2" 'BEGIN { while (count--) printf "%s", text }'

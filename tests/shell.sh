@@ -55,6 +55,14 @@ says() {
     fail "$1" - <err.txt
 }
 
+# none NAME: nothing is left in the folder `o`, which is made anew.
+none() {
+    left=$(ls -A o)
+    empty "$1" "$left"
+    rm -rf o
+    mkdir o
+}
+
 have() {
     command -v "$1" >/dev/null 2>&1
 }

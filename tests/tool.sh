@@ -20,13 +20,6 @@ quad a -20 0 20 b 20 0 20 c -20 0 -20 albedo 0.5 0.5 0.5
 box min -1 0 -1 max 1 3 1 albedo 0.6 0.5 0.4
 SCENE
 
-# none NAME: nothing but the inputs is left in the folder `o`.
-none() {
-    left=$(ls -A o)
-    empty "$1" "$left"
-    rm -rf o
-    mkdir o
-}
 mkdir o
 
 # Usage: status 2.
