@@ -320,7 +320,7 @@ static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stat
 {
     int32_t x = tyni_mini((int32_t)px, p->view.width - 1), y = tyni_mini((int32_t)py, p->view.height - 1);
     float length, depth = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y)), t0, t1, at;
-    tyni_field lines = p->lines;
+    tyni_field lines;
     uint64_t start;
     tyni_sight v;
     length = tyni_view_sight(&p->view, px, py, &v);
@@ -329,12 +329,15 @@ static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stat
         stats->rays += !tyni_pass_sliced(p);
         return 0.0f;
     }
-    at = t1 / (length * p->view.far_depth);
-    lines.threshold = tyni_gather_threshold(lines.threshold, &p->view, p->lamp, px, py, at);
     if (!tyni_pass_sliced(p)) {
         tyni_pass_walk(p, &v, depth * length, value);
         stats->rays++;
-    } else if (!tyni_gather_lines(&p->gather, &lines, &p->slices, px, py, at, value)) {
+        return t1 / length;
+    }
+    at = t1 / (length * p->view.far_depth);
+    lines = p->lines;
+    lines.threshold = tyni_gather_threshold(lines.threshold, &p->view, p->lamp, px, py, at);
+    if (!tyni_gather_lines(&p->gather, &lines, &p->slices, px, py, at, value)) {
         start = tyni_pass_now(p);
         tyni_pass_walk(p, &v, depth * length, value);
         *correct_ns += tyni_pass_now(p) - start;

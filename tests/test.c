@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tyndall.h"
+
 #define SHOWN 10 /* failed checks of one test that are printed; a broken loop should not bury the others */
 
 static struct {
@@ -121,4 +123,9 @@ void test_count(int *passed, int *failed)
 {
     *passed = state.passed;
     *failed = state.failed;
+}
+
+void *test_aligned(void *memory)
+{
+    return (void *)(((uintptr_t)memory + TYN_ALIGNMENT - 1) / TYN_ALIGNMENT * TYN_ALIGNMENT);
 }

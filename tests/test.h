@@ -11,6 +11,9 @@ void test_begin(const char *name);
 void test_check(int passed, const char *file, int line, const char *text);
 void test_skip(const char *why); /* prints SKIPPED and the reason; the test counts as neither */
 
+/* The first place in memory at TYN_ALIGNMENT bytes: blocks want as much more. */
+void *test_aligned(void *memory);
+
 /* Reproducible random numbers: the same at every run, as a check that fails one day in ten proves nothing on the other nine.
  * Their seed is printed; TYN_SEED in the environment is another one, to hunt with. */
 uint32_t test_random(void);

@@ -24,7 +24,6 @@ static bench *bench_new(tyn_method method, float far)
     bench *b = calloc(1, sizeof *b);
     tyn_config config;
     size_t bytes = 0;
-    uintptr_t at;
     if (!b)
         abort();
     CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, SIZE, SIZE) == TYN_OK);
@@ -33,8 +32,7 @@ static bench *bench_new(tyn_method method, float far)
     config.workers = 2;
     CHECK(tyn_measure(&config, &bytes) == TYN_OK);
     b->memory = malloc(bytes + TYN_ALIGNMENT);
-    at = ((uintptr_t)b->memory + TYN_ALIGNMENT - 1) / TYN_ALIGNMENT * TYN_ALIGNMENT;
-    CHECK(tyn_init(&b->context, &config, (void *)at, bytes) == TYN_OK);
+    CHECK(tyn_init(&b->context, &config, test_aligned(b->memory), bytes) == TYN_OK);
     CHECK(tyn_camera_look(&b->frame.camera, eye, ahead, up, 1.0f, 0.1f, far, SIZE, SIZE) == TYN_OK);
     for (int i = 0; i < 2; i++) {
         b->light[i].direction[1] = -1;

@@ -23,11 +23,6 @@ typedef struct bush {
     void *memory;
 } bush;
 
-static void *aligned(void *memory)
-{
-    return (void *)(((uintptr_t)memory + TYN_ALIGNMENT - 1) / TYN_ALIGNMENT * TYN_ALIGNMENT);
-}
-
 static bush *bush_new(void)
 {
     const float eye[3] = {0, 0, 0}, ahead[3] = {0, 0, -1}, up[3] = {0, 1, 0};
@@ -39,7 +34,7 @@ static bush *bush_new(void)
     CHECK(tyn_camera_look(&b->camera, eye, ahead, up, 1.0f, 0.1f, 40.0f, SIZE, SIZE) == TYN_OK);
     CHECK(tyn_raster_measure(&raster, &bytes) == TYN_OK);
     b->memory = malloc(bytes + TYN_ALIGNMENT);
-    CHECK(tyn_raster_init(&b->raster, &raster, aligned(b->memory), bytes) == TYN_OK);
+    CHECK(tyn_raster_init(&b->raster, &raster, test_aligned(b->memory), bytes) == TYN_OK);
     return b;
 }
 
@@ -104,7 +99,7 @@ static void render(bush *b, tyn_config config, const tyn_light *light, const tyn
         frame.target = (tyn_image){b->target[i], SIZE, SIZE, 0, TYN_RGBA8_SRGB};
         CHECK(tyn_measure(&config, &bytes) == TYN_OK);
         memory = malloc(bytes + TYN_ALIGNMENT);
-        CHECK(tyn_init(&context, &config, aligned(memory), bytes) == TYN_OK);
+        CHECK(tyn_init(&context, &config, test_aligned(memory), bytes) == TYN_OK);
         CHECK(tyn_render(context, &frame) == TYN_OK);
         free(memory);
     }

@@ -37,11 +37,6 @@ static void add_box(stage *s, int box, float x, float z, float half, float heigh
         s->index[36 * box + i] = (uint32_t)(8 * box) + sides[i];
 }
 
-static void *aligned(void *memory)
-{
-    return (void *)(((uintptr_t)memory + TYN_ALIGNMENT - 1) / TYN_ALIGNMENT * TYN_ALIGNMENT);
-}
-
 /* A ring of posts around the camera, so that no direction of the light is easier than another, on a floor. */
 static stage *stage_new(void)
 {
@@ -68,14 +63,14 @@ static stage *stage_new(void)
     CHECK(tyn_camera_look(&s->camera, eye, ahead, up, 1.0f, 0.1f, 25.0f, WIDTH, HEIGHT) == TYN_OK);
     CHECK(tyn_raster_measure(&raster, &bytes) == TYN_OK);
     s->memory[2] = malloc(bytes + TYN_ALIGNMENT);
-    CHECK(tyn_raster_init(&s->raster, &raster, aligned(s->memory[2]), bytes) == TYN_OK);
+    CHECK(tyn_raster_init(&s->raster, &raster, test_aligned(s->memory[2]), bytes) == TYN_OK);
     CHECK(tyn_config_preset(&config, TYN_PRESET_QUALITY, WIDTH, HEIGHT) == TYN_OK);
     config.maps = FACES;
     for (int i = 0; i < 2; i++) {
         config.method = i ? TYN_METHOD_MARCH : TYN_METHOD_EPIPOLAR;
         CHECK(tyn_measure(&config, &bytes) == TYN_OK);
         s->memory[i] = malloc(bytes + TYN_ALIGNMENT);
-        CHECK(tyn_init(&s->context[i], &config, aligned(s->memory[i]), bytes) == TYN_OK);
+        CHECK(tyn_init(&s->context[i], &config, test_aligned(s->memory[i]), bytes) == TYN_OK);
     }
     return s;
 }
