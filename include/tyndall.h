@@ -101,7 +101,7 @@ typedef enum tyn_isa {
     TYN_ISA_SCALAR = 1, /* plain C; always there */
     TYN_ISA_SSE2 = 2,
     TYN_ISA_AVX2 = 4,
-    TYN_ISA_AVX512 = 8, /* F, BW, DQ and VL */
+    TYN_ISA_AVX512 = 8, /* F, BW, DQ, VL and VBMI2 */
     TYN_ISA_NEON = 16,  /* AArch64 */
     TYN_ISA_WASM = 32   /* SIMD128 */
 } tyn_isa;

@@ -18,8 +18,7 @@ typedef struct crossing {
     uint32_t position;
     int outside; /* lit before the first column and behind the last */
     int32_t looked;
-    uint16_t *edges; /* for the columns at which it changes: TYNI_RAY_EDGES and TYNI_RAY_SPARE, */
-    int32_t stride;  /* so far apart */
+    uint16_t *edges; /* for the columns at which it changes: TYNI_RAY_EDGES and TYNI_RAY_SPARE */
 } crossing;
 
 /* An orthographic map: w is 1 everywhere. */
@@ -30,7 +29,7 @@ static int is_flat(const tyni_piece *piece)
 
 /* ray_find without vectors: column by column, but for blocks without a change. */
 static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
-                            int outside, uint16_t *edges, int32_t stride)
+                            int outside, uint16_t *edges)
 {
     const uint16_t *threshold = finder->row->threshold;
     const int32_t last = first + end;
@@ -51,7 +50,7 @@ static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *n
             if (i == behind)
                 break;
             lit = !lit;
-            edges[n++ * stride] = (uint16_t)(i - first);
+            edges[n++] = (uint16_t)(i - first);
             if (n == TYNI_RAY_EDGES) {
                 *next = i - first + 1;
                 return n;
@@ -82,7 +81,7 @@ static int32_t each_column(crossing *c)
     for (; i <= c->last && n < TYNI_RAY_EDGES; i++)
         if ((c->position < threshold[i]) != lit) {
             lit = !lit;
-            c->edges[n++ * c->stride] = (uint16_t)i;
+            c->edges[n++] = (uint16_t)i;
         }
     c->looked += i - c->next;
     c->next = i;
@@ -100,7 +99,7 @@ static int32_t descend(crossing *c, const tyni_finder *finder)
         c->looked += tyni_tree_span(finder->tree, finder->row->threshold, c->position, i, &level, &top, &now);
         if (now != lit) {
             lit = now;
-            c->edges[n++ * c->stride] = (uint16_t)c->next;
+            c->edges[n++] = (uint16_t)c->next;
         }
         c->next += 1 << level;
     }
@@ -118,7 +117,7 @@ static int32_t swept_words(crossing *c, const tyni_finder *finder)
         if (left < 32)
             changes &= (1u << left) - 1u;
         for (; changes && n < TYNI_RAY_EDGES; changes &= changes - 1)
-            c->edges[n++ * c->stride] = (uint16_t)(c->next + tyni_ctz32(changes));
+            c->edges[n++] = (uint16_t)(c->next + tyni_ctz32(changes));
         lit = bits >> 31;
         c->next += changes ? tyni_ctz32(changes) : tyni_mini(left, 32);
         c->looked++;
@@ -140,7 +139,7 @@ static int32_t find(crossing *c, const tyni_finder *finder)
     else
         n = TYNI_LANES_CALL(finder->isa, ray_words, (c, finder));
     if (n & 1)
-        c->edges[n++ * c->stride] = (uint16_t)(c->last + 1);
+        c->edges[n++] = (uint16_t)(c->last + 1);
     return n;
 }
 
@@ -177,7 +176,6 @@ int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, 
     c.outside = m.outside;
     c.looked = 0;
     c.edges = edges;
-    c.stride = 1;
     for (int32_t i = 0; i < row->count && it->t0 < it->t1; i++) {
         const tyni_piece *piece = &row->pieces[i];
         tyni_line r = tyni_line_along(&piece->r, v), w = tyni_line_along(&piece->w, v);
@@ -238,7 +236,6 @@ static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piec
     c.piece = piece;
     c.outside = outside;
     c.looked = 0;
-    c.stride = TYNI_RAY_BUNDLE;
     for (int32_t n = 0; n < b->count; n++) {
         b->edges[n] = 0;
         if (b->next[n] > b->last[n])
@@ -248,8 +245,8 @@ static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piec
         c.next = b->next[n];
         c.last = b->last[n];
         c.position = (uint32_t)b->position[n];
-        c.edges = &b->edge[0][n];
-        b->edges[n] = find(&c, finder);
+        c.edges = b->edge + n * TYNI_RAY_EDGES;
+        b->edges[n] = (uint16_t)find(&c, finder);
         b->next[n] = c.next;
         left |= c.next <= c.last;
     }

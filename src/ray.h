@@ -46,7 +46,7 @@ int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *integral, con
 
 #define TYNI_RAY_BUNDLE 16 /* rays, a whole vector of the widest ISA */
 #define TYNI_RAY_EDGES 24  /* edges of a ray at a time: it goes into the light or out of it. Even: then it is back outside */
-#define TYNI_RAY_SPARE 3   /* behind them, for who writes a few more than there are */
+#define TYNI_RAY_SPARE 64  /* behind them, for who writes more than there are */
 
 /* All zeros before its first use: where rays have fewer edges than their neighbours, what is there is read and dropped.
  * Rays from t = 0 to `to`; all arrays are per ray. */
@@ -63,8 +63,8 @@ typedef struct tyni_bundle {
     float rc[TYNI_RAY_BUNDLE], rd[TYNI_RAY_BUNDLE], wc[TYNI_RAY_BUNDLE], wd[TYNI_RAY_BUNDLE];
     float from[TYNI_RAY_BUNDLE], until[TYNI_RAY_BUNDLE];
     int32_t next[TYNI_RAY_BUNDLE], last[TYNI_RAY_BUNDLE];
-    int32_t edges[TYNI_RAY_BUNDLE];                                  /* that wait for their integrals */
-    uint16_t edge[TYNI_RAY_EDGES + TYNI_RAY_SPARE][TYNI_RAY_BUNDLE]; /* rays side by side: they change at these columns */
+    uint16_t edges[TYNI_RAY_BUNDLE];                                  /* that wait for their integrals */
+    uint16_t edge[TYNI_RAY_BUNDLE * TYNI_RAY_EDGES + TYNI_RAY_SPARE]; /* ray after ray: it changes at these columns */
 } tyni_bundle;
 
 /* From `count` and `sample` all the rest. depth: of the slice's samples; most: the frame's max_distance, 0: none; outside: what

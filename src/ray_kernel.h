@@ -1,36 +1,15 @@
 /* ray_kernel.h - a template: rays side by side, for ray.c. */
 
-/* The lowest bit that is set; x != 0. */
-TYNI_V_INLINE int32_t TYNI_V(ray_ctz)(uint64_t x)
-{
-#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
-    return __builtin_ctzll(x);
-#else
-    return (uint32_t)x ? tyni_ctz32((uint32_t)x) : 32 + tyni_ctz32((uint32_t)(x >> 32));
-#endif
-}
-
-/* How many are set. */
-TYNI_V_INLINE int32_t TYNI_V(ray_ones)(uint64_t x)
-{
-#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
-    if (v_n >= 8) /* an instruction there */
-        return __builtin_popcountll(x);
-#endif
-    return tyni_ones32((uint32_t)x) + tyni_ones32((uint32_t)(x >> 32));
-}
-
-/* find by compares and bit scans, 64 columns at a time. Blocks without a change are passed over 32 at a time. Of a word that
- * changes four edges are written without asking whether there are so many: a branch that nobody can foretell costs more. */
+/* find by compares, 64 columns at a time. Blocks without a change are passed over 32 at a time. */
 TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
-                                       int outside, uint16_t *edges, int32_t stride)
+                                       int outside, uint16_t *edges)
 {
     const uint16_t *threshold = finder->row->threshold, *low = finder->blocks->low, *high = finder->blocks->high;
     const int32_t start = first + *next, last = first + end;
-    const uint64_t top = (uint64_t)1 << 63, behind = ~(uint64_t)1 << (start & 63);
+    const uint64_t behind = ~(uint64_t)1 << (start & 63);
     int32_t n = (position < threshold[start]) != outside;
     if (v_n == 1)
-        return find_columns(finder, first, next, end, position, outside, edges, stride);
+        return find_columns(finder, first, next, end, position, outside, edges);
     edges[0] = (uint16_t)*next;
     for (int32_t w = start >> 6; w <= last >> 6; w += 32) {
         uint32_t mixed = v_above16(high + w, position) & ~v_above16(low + w, position);
@@ -40,25 +19,15 @@ TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first,
             const int32_t i = 64 * (w + tyni_ctz32(mixed));
             const uint64_t bits = v_above16(threshold + i, position) | (uint64_t)v_above16(threshold + i + 32, position) << 32;
             uint64_t changes = bits ^ (bits << 1);
-            uint16_t *out = edges + n * stride;
             if (i > start)
                 changes ^= position < threshold[i - 1];
             else
                 changes &= behind;
             if (i + 63 > last)
                 changes &= ((uint64_t)2 << (last & 63)) - 1;
-            n += TYNI_V(ray_ones)(changes);
-            do {
-                const uint64_t second = changes & (changes - 1), third = second & (second - 1), fourth = third & (third - 1);
-                out[0] = (uint16_t)(i - first + TYNI_V(ray_ctz)(changes | top));
-                out[stride] = (uint16_t)(i - first + TYNI_V(ray_ctz)(second | top));
-                out[2 * stride] = (uint16_t)(i - first + TYNI_V(ray_ctz)(third | top));
-                out[3 * stride] = (uint16_t)(i - first + TYNI_V(ray_ctz)(fourth | top));
-                out += 4 * stride;
-                changes = fourth & (fourth - 1);
-            } while (changes && out < edges + TYNI_RAY_EDGES * stride);
+            n += v_ones64(edges + n, changes, i - first);
             if (n >= TYNI_RAY_EDGES) {
-                *next = edges[(TYNI_RAY_EDGES - 1) * stride] + 1;
+                *next = edges[TYNI_RAY_EDGES - 1] + 1;
                 return TYNI_RAY_EDGES;
             }
         }
@@ -71,12 +40,12 @@ TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first,
 static TYNI_V_TARGET int32_t TYNI_V(ray_words)(crossing *c, const tyni_finder *finder)
 {
     const int32_t start = c->next;
-    const int32_t n = TYNI_V(ray_find)(finder, c->piece->first, &c->next, c->last, c->position, c->outside, c->edges, 1);
+    const int32_t n = TYNI_V(ray_find)(finder, c->piece->first, &c->next, c->last, c->position, c->outside, c->edges);
     c->looked += (c->next - start + 31) / 32;
     return n;
 }
 
-/* fill_edges */
+/* fill_edges. What is written behind a ray's edges is the next one's, which comes later. */
 static TYNI_V_TARGET int TYNI_V(ray_fill)(tyni_bundle *b, const tyni_finder *finder, const tyni_piece *piece, int outside,
                                           int32_t *looked)
 {
@@ -85,15 +54,15 @@ static TYNI_V_TARGET int TYNI_V(ray_fill)(tyni_bundle *b, const tyni_finder *fin
         const int32_t last = b->last[n], start = b->next[n];
         int32_t next = start, count = 0;
         if (next <= last) {
-            count = TYNI_V(ray_find)(finder, piece->first, &next, last, (uint32_t)b->position[n], outside, &b->edge[0][n],
-                                     TYNI_RAY_BUNDLE);
-            b->edge[count][n] = (uint16_t)(last + 1);
+            uint16_t *edge = b->edge + n * TYNI_RAY_EDGES;
+            count = TYNI_V(ray_find)(finder, piece->first, &next, last, (uint32_t)b->position[n], outside, edge);
+            edge[count] = (uint16_t)(last + 1);
             count += count & 1;
             b->next[n] = next;
             left |= next <= last;
             *looked += (next - start + 31) / 32;
         }
-        b->edges[n] = count;
+        b->edges[n] = (uint16_t)count;
     }
     return left;
 }
@@ -221,10 +190,10 @@ TYNI_V_INLINE float TYNI_V(ray_rate)(float sigma)
     return 1.44269504f * tyni_maxf(sigma, 1e-20f);
 }
 
-/* Where edge e of each ray is: its t. */
-TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, int32_t e)
+/* The t of each ray at one of its columns. */
+TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, v_int column)
 {
-    const v_int column = v_load_u16(b->edge[e] + i), step = v_shr(column, 1), one = v_iset(1);
+    const v_int step = v_shr(column, 1), one = v_iset(1);
     /* rays with fewer edges have there what others left */
     v_float at = v_gather(piece->split, v_imin(step, v_iset(piece->steps - 1)));
     at = v_to_float(step) + v_select(v_ieq(v_iand(column, one), one), at, v_set(0.0f));
@@ -237,6 +206,19 @@ TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *
     return v_clamp(at, v_set(0.0f), v_load(b->to + i));
 }
 
+/* Where edges e and e + 1 of each ray are, two columns in a word. */
+TYNI_V_INLINE void TYNI_V(ray_pair)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, int32_t e,
+                                    v_float *begin, v_float *end)
+{
+    const v_int pair = v_iload_apart(b->edge + i * TYNI_RAY_EDGES + e, TYNI_RAY_EDGES * (int32_t)sizeof *b->edge);
+    const v_int low = v_iand(pair, v_iset(0xffff)), high = v_shr(pair, 16);
+    const uint16_t one = 1;
+    uint8_t low_first;
+    memcpy(&low_first, &one, 1);
+    *begin = TYNI_V(ray_place)(b, piece, flat, i, low_first ? low : high);
+    *end = TYNI_V(ray_place)(b, piece, flat, i, low_first ? high : low);
+}
+
 /* The integrals up to the edges that wait: those with an even number begin what differs from outside, those with an odd number
  * end it. Only ratios of integrals count, so that they are without their 1 / sigma. */
 static TYNI_V_TARGET void TYNI_V(ray_settle)(tyni_bundle *b, const tyni_piece *piece, const float sigma[2])
@@ -245,24 +227,21 @@ static TYNI_V_TARGET void TYNI_V(ray_settle)(tyni_bundle *b, const tyni_piece *p
     const float s0 = TYNI_V(ray_rate)(sigma[0]), s1 = TYNI_V(ray_rate)(sigma[1]);
     const v_float zero = v_set(0.0f);
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
-        const v_int edges = v_iload(b->edges + i);
+        const v_int edges = v_load_u16(b->edges + i);
         v_float sum0 = v_load(b->visible[0] + i), sum1 = v_load(b->visible[1] + i);
         v_mask some = v_igt(edges, v_iset(0));
         v_float begin, end;
         if (v_none(some))
             continue;
-        begin = TYNI_V(ray_place)(b, piece, flat, i, 0);
-        end = TYNI_V(ray_place)(b, piece, flat, i, 1);
+        TYNI_V(ray_pair)(b, piece, flat, i, 0, &begin, &end);
         /* the next two places before the light of these: either is a long chain, and so they overlap */
         for (int32_t e = 2; v_any(some); e += 2) {
             const v_float t0 = begin, t1 = end;
             const v_mask now = some;
             v_float light0, light1;
             some = v_igt(edges, v_iset(e));
-            if (v_any(some)) {
-                begin = TYNI_V(ray_place)(b, piece, flat, i, e);
-                end = TYNI_V(ray_place)(b, piece, flat, i, e + 1);
-            }
+            if (v_any(some))
+                TYNI_V(ray_pair)(b, piece, flat, i, e, &begin, &end);
             light0 = TYNI_V(ray_dimmed)(s0 * t1) - TYNI_V(ray_dimmed)(s0 * t0);
             light1 = TYNI_V(ray_dimmed)(s1 * t1) - TYNI_V(ray_dimmed)(s1 * t0);
             sum0 = sum0 + v_select(now, light0, zero);

@@ -213,6 +213,11 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
     v_store(f, v_from_bits(v_igather(table + 32, v_iload(k))));
     for (int32_t i = 0; i < v_n; i++)
         CHECK(memcmp(&f[i], (uint8_t *)&table[32] + k[i], 4) == 0);
+    for (int32_t apart = 0; apart <= 15; apart += 5) {
+        v_store(f, v_from_bits(v_iload_apart((uint8_t *)table + 3, apart)));
+        for (int32_t i = 0; i < v_n; i++)
+            CHECK(memcmp(&f[i], (uint8_t *)table + 3 + i * apart, 4) == 0);
+    }
     for (int32_t i = 0; i < v_n; i++)
         k[i] = a[i] < a[16 + i] ? k[i] : 2000000000;
     v_store(f, v_from_bits(v_igather_where(table + 32, v_iload(k), m)));
@@ -293,6 +298,11 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
 static TYNI_V_TARGET uint32_t TYNI_V(test_word)(const uint16_t *t, uint32_t position)
 {
     return v_above16(t, position);
+}
+
+static TYNI_V_TARGET int32_t TYNI_V(test_ones)(uint16_t *out, uint64_t bits, int32_t base)
+{
+    return v_ones64(out, bits, base);
 }
 
 static TYNI_V_TARGET void TYNI_V(test_dots8)(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

@@ -247,6 +247,12 @@ TYNI_AVX2_OP __m256i tyni_avx2_igather(const void *base, __m256i bytes)
     _mm256_storeu_si256((__m256i *)(void *)at, bytes);
     return _mm256_inserti128_si256(_mm256_castsi128_si256(tyni_avx2_four(base, at)), tyni_avx2_four(base, at + 4), 1);
 }
+TYNI_AVX2_OP __m256i tyni_avx2_iload_apart(const void *p, int32_t bytes)
+{
+    const int32_t at[4] = {0, bytes, 2 * bytes, 3 * bytes};
+    const uint8_t *base = p;
+    return _mm256_inserti128_si256(_mm256_castsi128_si256(tyni_avx2_four(base, at)), tyni_avx2_four(base + 4 * bytes, at), 1);
+}
 TYNI_AVX2_OP __m256 tyni_avx2_pick(const float *base, __m256i index)
 {
     return _mm256_permutevar8x32_ps(_mm256_loadu_ps(base), index);
@@ -310,6 +316,12 @@ TYNI_AVX2_OP uint32_t tyni_avx2_above16(const uint16_t *t, uint32_t position)
     const __m256i a = _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_loadu_si256(v), p), zero);
     const __m256i b = _mm256_cmpeq_epi16(_mm256_subs_epu16(_mm256_loadu_si256(v + 1), p), zero);
     return ~(uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xd8));
+}
+
+TYNI_AVX2_OP int32_t tyni_avx2_ones64(uint16_t *out, uint64_t bits, int32_t base)
+{
+    tyni_scalar_list64(out, bits, base);
+    return __builtin_popcountll(bits);
 }
 
 TYNI_AVX2_OP void tyni_avx2_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

@@ -21,7 +21,7 @@ static uint32_t saved(void)
 static int32_t here(void)
 {
     const uint32_t popcnt_osxsave_avx = 1u << 23 | 1u << 27 | 1u << 28, bmi_avx2_bmi2 = 1u << 3 | 1u << 5 | 1u << 8;
-    const uint32_t f_dq_bw_vl = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
+    const uint32_t f_dq_bw_vl = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31, vbmi2 = 1u << 6;
     int32_t isas = TYN_ISA_SCALAR | TYN_ISA_SSE2;
     uint32_t most[4], one[4], seven[4], state;
     cpuid(0, 0, most);
@@ -32,7 +32,7 @@ static int32_t here(void)
     state = saved();
     if ((state & 0x06u) == 0x06u && (seven[1] & bmi_avx2_bmi2) == bmi_avx2_bmi2) {
         isas |= TYN_ISA_AVX2;
-        if ((state & 0xe6u) == 0xe6u && (seven[1] & f_dq_bw_vl) == f_dq_bw_vl)
+        if ((state & 0xe6u) == 0xe6u && (seven[1] & f_dq_bw_vl) == f_dq_bw_vl && (seven[2] & vbmi2))
             isas |= TYN_ISA_AVX512;
     }
     return isas & tyn_isa_built();

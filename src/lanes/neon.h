@@ -241,6 +241,13 @@ TYNI_NEON_OP void tyni_neon_store_u16(uint16_t *p, int32x4_t x)
 {
     vst1_u16(p, vmovn_u32(vreinterpretq_u32_s32(x)));
 }
+TYNI_NEON_OP int32x4_t tyni_neon_iload_apart(const void *p, int32_t bytes)
+{
+    int32_t x[4];
+    for (int32_t i = 0; i < 4; i++)
+        memcpy(&x[i], (const uint8_t *)p + i * bytes, 4);
+    return tyni_neon_iload(x);
+}
 TYNI_NEON_OP int32x4_t tyni_neon_igather(const void *base, int32x4_t bytes)
 {
     int32_t at[4], x[4];
@@ -310,6 +317,11 @@ TYNI_NEON_OP uint32_t tyni_neon_above16(const uint16_t *t, uint32_t position)
     for (int32_t i = 0; i < 4; i++)
         word |= (uint32_t)vaddv_u8(vand_u8(vmovn_u16(vcltq_u16(p, vld1q_u16(t + 8 * i))), bits)) << (8 * i);
     return word;
+}
+
+TYNI_NEON_OP int32_t tyni_neon_ones64(uint16_t *out, uint64_t bits, int32_t base)
+{
+    return tyni_scalar_ones64(out, bits, base);
 }
 
 TYNI_NEON_OP void tyni_neon_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

@@ -244,6 +244,11 @@ TYNI_SCALAR_OP float tyni_scalar_pick16(const float *base, int32_t index)
 {
     return tyni_scalar_gather(base, index);
 }
+TYNI_SCALAR_OP int32_t tyni_scalar_iload_apart(const void *p, int32_t bytes)
+{
+    (void)bytes;
+    return tyni_scalar_iload(p);
+}
 TYNI_SCALAR_OP int32_t tyni_scalar_igather(const void *base, int32_t bytes)
 {
     return tyni_scalar_iload((const uint8_t *)base + bytes);
@@ -274,6 +279,36 @@ TYNI_SCALAR_OP uint32_t tyni_scalar_above16(const uint16_t *t, uint32_t position
     for (int32_t i = 0; i < 32; i++)
         word |= (uint32_t)(position < t[i]) << i;
     return word;
+}
+
+/* The lowest bit that is set; x != 0. */
+TYNI_SCALAR_OP int32_t tyni_scalar_ctz64(uint64_t x)
+{
+#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
+    return __builtin_ctzll(x);
+#else
+    return (uint32_t)x ? tyni_ctz32((uint32_t)x) : 32 + tyni_ctz32((uint32_t)(x >> 32));
+#endif
+}
+/* What ones64 writes, for all that have no instruction for it. Four at a time without asking whether there are so many: a
+ * branch that nobody can foretell costs more. */
+TYNI_SCALAR_OP void tyni_scalar_list64(uint16_t *out, uint64_t bits, int32_t base)
+{
+    const uint64_t top = (uint64_t)1 << 63;
+    do {
+        const uint64_t second = bits & (bits - 1), third = second & (second - 1), fourth = third & (third - 1);
+        out[0] = (uint16_t)(base + tyni_scalar_ctz64(bits | top));
+        out[1] = (uint16_t)(base + tyni_scalar_ctz64(second | top));
+        out[2] = (uint16_t)(base + tyni_scalar_ctz64(third | top));
+        out[3] = (uint16_t)(base + tyni_scalar_ctz64(fourth | top));
+        out += 4;
+        bits = fourth & (fourth - 1);
+    } while (bits);
+}
+TYNI_SCALAR_OP int32_t tyni_scalar_ones64(uint16_t *out, uint64_t bits, int32_t base)
+{
+    tyni_scalar_list64(out, bits, base);
+    return tyni_ones32((uint32_t)bits) + tyni_ones32((uint32_t)(bits >> 32));
 }
 
 TYNI_SCALAR_OP void tyni_scalar_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

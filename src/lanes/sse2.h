@@ -247,6 +247,13 @@ TYNI_SSE2_OP void tyni_sse2_store_u8(uint8_t *p, __m128i x)
     const int32_t four = _mm_cvtsi128_si32(_mm_packus_epi16(words, words));
     memcpy(p, &four, 4);
 }
+TYNI_SSE2_OP __m128i tyni_sse2_iload_apart(const void *p, int32_t bytes)
+{
+    int32_t x[4];
+    for (int32_t i = 0; i < 4; i++)
+        memcpy(&x[i], (const uint8_t *)p + i * bytes, 4);
+    return tyni_sse2_iload(x);
+}
 TYNI_SSE2_OP __m128i tyni_sse2_igather(const void *base, __m128i bytes)
 {
     int32_t at[4], x[4];
@@ -321,6 +328,11 @@ TYNI_SSE2_OP uint32_t tyni_sse2_above16(const uint16_t *t, uint32_t position)
         below |= (uint32_t)_mm_movemask_epi8(_mm_packs_epi16(a, b)) << (16 * i);
     }
     return ~below;
+}
+
+TYNI_SSE2_OP int32_t tyni_sse2_ones64(uint16_t *out, uint64_t bits, int32_t base)
+{
+    return tyni_scalar_ones64(out, bits, base);
 }
 
 TYNI_SSE2_OP void tyni_sse2_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

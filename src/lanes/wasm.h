@@ -234,6 +234,13 @@ TYNI_WASM_OP void tyni_wasm_store_u16(uint16_t *p, v128_t x)
 {
     wasm_v128_store64_lane(p, wasm_i16x8_shuffle(x, x, 0, 2, 4, 6, 0, 2, 4, 6), 0);
 }
+TYNI_WASM_OP v128_t tyni_wasm_iload_apart(const void *p, int32_t bytes)
+{
+    int32_t x[4];
+    for (int32_t i = 0; i < 4; i++)
+        memcpy(&x[i], (const uint8_t *)p + i * bytes, 4);
+    return tyni_wasm_iload(x);
+}
 TYNI_WASM_OP v128_t tyni_wasm_igather(const void *base, v128_t bytes)
 {
     int32_t at[4], x[4];
@@ -303,6 +310,11 @@ TYNI_WASM_OP uint32_t tyni_wasm_above16(const uint16_t *t, uint32_t position)
         word |= (uint32_t)wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(a, b)) << (16 * i);
     }
     return word;
+}
+
+TYNI_WASM_OP int32_t tyni_wasm_ones64(uint16_t *out, uint64_t bits, int32_t base)
+{
+    return tyni_scalar_ones64(out, bits, base);
 }
 
 TYNI_WASM_OP void tyni_wasm_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
