@@ -66,8 +66,9 @@ int tyni_columns_next(tyni_columns *c, float *from, float *to, uint32_t *thresho
             piece_begin(c, p);
             x = c->piece[i].begin;
         } else if (i >= 0) {
-            *threshold = p->threshold[c->k];
-            while (c->k < c->last && p->threshold[c->k + 1] == *threshold)
+            const uint16_t *column = c->row->threshold + p->first;
+            *threshold = column[c->k];
+            while (c->k < c->last && column[c->k + 1] == *threshold)
                 c->k++;
             x = c->k < c->last ? column_of(c, i, tyni_row_edge(p, c->k + 1)) : c->piece[i].end;
             c->k++;

@@ -18,9 +18,14 @@ void tyni_course_begin(tyni_course *c, const float u[2], const float v[2])
     c->steps = tyni_maxi(tyni_ceili(c->to), 1);
 }
 
-int32_t tyni_course_on(const tyni_course *c, const tyni_texels *texels, int32_t *first)
+int32_t tyni_course_on(const tyni_course *c, const tyni_texels *texels, tyni_cells *cells)
 {
     int32_t size = c->across ? texels->width : texels->height;
-    *first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
-    return tyni_mini(c->steps, c->sign > 0.0f ? size - *first : *first + 1);
+    int32_t first = tyni_clampi((int32_t)c->base - (c->sign < 0.0f), 0, size - 1);
+    cells->minor = c->minor;
+    cells->slope = c->slope;
+    cells->first = (int16_t)first;
+    cells->across = (int8_t)c->across;
+    cells->way = c->sign > 0.0f ? 1 : -1;
+    return tyni_mini(c->steps, c->sign > 0.0f ? size - first : first + 1);
 }

@@ -17,10 +17,22 @@ typedef struct tyni_course {
     int32_t steps;  /* at least 1 */
 } tyni_course;
 
+/* The texels of its steps. */
+typedef struct tyni_cells {
+    float minor, slope;
+    int16_t first;      /* the texel of step 0 along the major axis */
+    int8_t across, way; /* way: 1 or -1 */
+} tyni_cells;
+
+typedef char cells_fit[TYN_MAX_SHADOW <= 32768 ? 1 : -1];
+
 /* From (u[0], v[0]) to (u[1], v[1]), in texels. */
 void tyni_course_begin(tyni_course *course, const float u[2], const float v[2]);
 
-/* The texel of step 0 along the major axis; returns how many steps lie on the map. */
-int32_t tyni_course_on(const tyni_course *course, const tyni_texels *texels, int32_t *first);
+/* Returns how many steps lie on the map. */
+int32_t tyni_course_on(const tyni_course *course, const tyni_texels *texels, tyni_cells *cells);
+
+#define TYNI_KERNEL "course_kernel.h"
+#include "lanes/each.h"
 
 #endif

@@ -61,7 +61,20 @@ static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *n
     return n;
 }
 
+/* Steps whose texels coarse rays cross together. */
+#define PACES 16
+
+/* Coarse rays of a bundle on their way over a piece's texels. */
+typedef struct paces {
+    float z[TYNI_RAY_BUNDLE], rise[TYNI_RAY_BUNDLE]; /* map depth where they come in, and its rise a step */
+    float at[TYNI_RAY_BUNDLE];                       /* the step coordinate that they have come to */
+    uint32_t on;                                     /* bit n: there ray n differs from what is outside */
+    int32_t first, last;                             /* steps that any ray crosses */
+} paces;
+
 #define TYNI_KERNEL "ray_kernel.h"
+#include "lanes/each.h"
+#define TYNI_KERNEL "coarse_kernel.h"
 #include "lanes/each.h"
 
 /* The columns that a ray crosses from step coordinate `from` to `to`. */
@@ -73,9 +86,9 @@ static void columns_of(const tyni_piece *piece, float from, float to, int32_t *f
 }
 
 /* IVB's march without its tree. */
-static int32_t each_column(crossing *c)
+static int32_t each_column(crossing *c, const tyni_finder *finder)
 {
-    const uint16_t *threshold = c->piece->threshold;
+    const uint16_t *threshold = finder->row->threshold + c->piece->first;
     int32_t n = 0, i = c->next;
     int lit = c->outside;
     for (; i <= c->last && n < TYNI_RAY_EDGES; i++)
@@ -133,7 +146,7 @@ static int32_t find(crossing *c, const tyni_finder *finder)
     if (tyni_ray_way(finder->rays, TYN_RAYS_TREE))
         n = descend(c, finder);
     else if (tyni_ray_way(finder->rays, TYN_RAYS_COLUMNS))
-        n = each_column(c);
+        n = each_column(c, finder);
     else if (tyni_ray_way(finder->rays, TYN_RAYS_SWEEP))
         n = swept_words(c, finder);
     else
@@ -254,12 +267,23 @@ static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piec
     return left;
 }
 
+/* The coarse rays of a bundle, from texel to texel: all of a slice's rays go along the same ones. */
+static TYNI_NOINLINE void walk(tyni_bundle *b, int32_t isa, const tyni_view *view, const tyni_piece *piece,
+                               const tyni_lamp *lamp, const float sigma[2])
+{
+    const tyni_map *map = &lamp->maps[piece->map];
+    paces w;
+    TYNI_LANES_CALL(isa, ray_set_out, (b, view, piece, map, &w));
+    for (int32_t k = w.first; k <= w.last; k += PACES)
+        TYNI_LANES_CALL(isa, ray_pass, (b, piece, &map->texels, k, lamp->outside, sigma, &w));
+}
+
 int32_t tyni_ray_bundle(tyni_bundle *b, const tyni_finder *finder, const tyni_slice *slice, const tyni_view *view,
-                        const float *depth, float most, int outside, const float sigma[2])
+                        const float *depth, float most, const tyni_lamp *lamp, const float sigma[2])
 {
     const tyni_row *row = finder->row;
     int32_t looked = 0, isa = finder->isa;
-    int left;
+    int left, outside = lamp->outside;
     b->coarse = 0;
     for (int32_t n = b->count; n < TYNI_RAY_BUNDLE; n++) {
         b->sample[n] = b->sample[0];
@@ -273,6 +297,8 @@ int32_t tyni_ray_bundle(tyni_bundle *b, const tyni_finder *finder, const tyni_sl
         if (row->count > 1)
             TYNI_LANES_CALL(isa, ray_spans, (b, view, piece, 0));
         TYNI_LANES_CALL(isa, ray_enter, (b, piece, sigma[1], finder->coarse));
+        if (b->coarse)
+            walk(b, isa, view, piece, lamp, sigma);
         do {
             if (finder->rays == TYN_RAYS_WORDS)
                 left = TYNI_LANES_CALL(isa, ray_fill, (b, finder, piece, outside, &looked));

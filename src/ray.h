@@ -52,7 +52,7 @@ int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *integral, con
  * Rays from t = 0 to `to`; all arrays are per ray. */
 typedef struct tyni_bundle {
     int32_t count;
-    uint32_t coarse;                   /* out: bit n: columns are too coarse for ray n, which has no value; walk */
+    uint32_t coarse;                   /* bit n: columns are too coarse for ray n: it goes from texel to texel */
     int32_t sample[TYNI_RAY_BUNDLE];   /* in, the first `count` */
     float visible[2][TYNI_RAY_BUNDLE]; /* out, by channel */
     float v[3][TYNI_RAY_BUNDLE];       /* its way from the camera; of an orthographic one, where it starts */
@@ -67,9 +67,9 @@ typedef struct tyni_bundle {
     uint16_t edge[TYNI_RAY_BUNDLE * TYNI_RAY_EDGES + TYNI_RAY_SPARE]; /* ray after ray: it changes at these columns */
 } tyni_bundle;
 
-/* From `count` and `sample` all the rest. depth: of the slice's samples; most: the frame's max_distance, 0: none; outside: what
- * is not of the row is lit; sigma: of the two channels, the larger one second. Returns what was looked at. */
+/* From `count` and `sample` all the rest. depth: of the slice's samples; most: the frame's max_distance, 0: none; sigma: of the
+ * two channels, the larger one second. Returns what was looked at of the row. */
 int32_t tyni_ray_bundle(tyni_bundle *bundle, const tyni_finder *finder, const tyni_slice *slice, const tyni_view *view,
-                        const float *depth, float most, int outside, const float sigma[2]);
+                        const float *depth, float most, const tyni_lamp *lamp, const float sigma[2]);
 
 #endif

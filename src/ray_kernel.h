@@ -190,7 +190,17 @@ TYNI_V_INLINE float TYNI_V(ray_rate)(float sigma)
     return 1.44269504f * tyni_maxf(sigma, 1e-20f);
 }
 
-/* The t of each ray at one of its columns. */
+/* The t of each ray at a step coordinate. */
+TYNI_V_INLINE v_float TYNI_V(ray_t)(const tyni_bundle *b, int flat, int32_t i, v_float at)
+{
+    if (flat)
+        at = at * v_load(b->rd + i) - v_load(b->rc + i);
+    else
+        at = (at * v_load(b->wc + i) - v_load(b->rc + i)) / (v_load(b->rd + i) - at * v_load(b->wd + i));
+    return v_clamp(at, v_set(0.0f), v_load(b->to + i));
+}
+
+/* The same at one of its columns. */
 TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, v_int column)
 {
     const v_int step = v_shr(column, 1), one = v_iset(1);
@@ -198,12 +208,7 @@ TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *
     v_float at = v_gather(piece->split, v_imin(step, v_iset(piece->steps - 1)));
     at = v_to_float(step) + v_select(v_ieq(v_iand(column, one), one), at, v_set(0.0f));
     /* the first column begins before the ray comes in, the last one ends behind its end */
-    at = v_clamp(at, v_load(b->from + i), v_load(b->until + i));
-    if (flat)
-        at = at * v_load(b->rd + i) - v_load(b->rc + i);
-    else
-        at = (at * v_load(b->wc + i) - v_load(b->rc + i)) / (v_load(b->rd + i) - at * v_load(b->wd + i));
-    return v_clamp(at, v_set(0.0f), v_load(b->to + i));
+    return TYNI_V(ray_t)(b, flat, i, v_clamp(at, v_load(b->from + i), v_load(b->until + i)));
 }
 
 /* Where edges e and e + 1 of each ray are, two columns in a word. */

@@ -108,15 +108,6 @@ static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice,
 #define TYNI_KERNEL "row_kernel.h"
 #include "lanes/each.h"
 
-static void fill(tyni_piece *piece, uint16_t *threshold, float *split, int32_t isa, const tyni_map *map, const tyni_course *c,
-                 const ends *e)
-{
-    const tyni_texels *t = &map->texels;
-    int32_t first;
-    piece->steps = tyni_course_on(c, t, &first);
-    TYNI_LANES_CALL(isa, row_fill, (t, c, e, first, piece->steps, threshold, split));
-}
-
 /* Where thresholds are written. */
 typedef struct pen {
     int32_t isa;
@@ -125,9 +116,11 @@ typedef struct pen {
     size_t room;
 } pen;
 
-static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_slice *slice, const tyni_view *view,
+/* The part of the row on map i. */
+static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, const tyni_slice *slice, const tyni_view *view,
                       const float u[2], const float v[2], const float p[2])
 {
+    const tyni_map *map = &lamp->maps[i];
     tyni_piece *piece = &row->pieces[row->count];
     const tyni_form *form;
     tyni_course c;
@@ -142,11 +135,12 @@ static void add_piece(tyni_row *row, pen *w, const tyni_map *map, const tyni_sli
     piece->from = c.from;
     piece->to = c.to;
     piece->first = row->columns;
-    piece->threshold = w->threshold;
     piece->split = w->split;
+    piece->map = (int8_t)i;
     if (!ends_begin(&e, piece, slice, view, map, p))
         return;
-    fill(piece, w->threshold, w->split, w->isa, map, &c, &e);
+    piece->steps = tyni_course_on(&c, &map->texels, &piece->cells);
+    TYNI_LANES_CALL(w->isa, row_fill, (&map->texels, &piece->cells, c.from, &e, piece->steps, w->threshold, w->split));
     row->count++;
     row->columns += 2 * piece->steps;
     w->threshold += 2 * piece->steps;
@@ -178,7 +172,7 @@ void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *spli
             fan f = open[k];
             if (fan_empty(&f) || !fan_on_map(&f, &lamp->maps[i], slice, u, v))
                 continue;
-            add_piece(row, &w, &lamp->maps[i], slice, view, u, v, p);
+            add_piece(row, &w, lamp, i, slice, view, u, v, p);
             if (fans < TYNI_ROW_PIECES + 2) { /* beyond it */
                 open[fans] = open[k];
                 open[fans].n[0] = f.n[1];

@@ -11,6 +11,7 @@
 #ifndef TYNI_ROW_H
 #define TYNI_ROW_H
 
+#include "course.h"
 #include "slice.h"
 #include "vec.h"
 #include "view.h"
@@ -20,13 +21,14 @@
 /* The columns of one shadow map, or of a part of it: where several maps meet (cascades, the faces of a cube) each column is
  * looked up in the first map that covers it, and the row is a chain of pieces. */
 typedef struct tyni_piece {
-    int32_t first;             /* column of the row that is its column 0 */
-    const uint16_t *threshold; /* of column i; lit for a ray at position q if q < threshold */
-    const float *split;        /* of step k: 0 .. 1; 1: one texel, its two columns are alike */
+    const float *split; /* of step k: 0 .. 1; 1: one texel, its two columns are alike */
+    int32_t first;      /* column of the row that is its column 0 */
     int32_t steps;
     float from, to; /* step coordinates where the piece begins and ends, inside the first and the last step */
     /* Step coordinate of a camera-relative point: r . p / w . p. Rises along every view ray. */
     tyni_form r, w;
+    tyni_cells cells; /* texels of its steps */
+    int8_t map;       /* of the light's maps */
 } tyni_piece;
 
 /* 8 maps are 8 intervals of columns, which cut each other into 15 at most; one more where the two quarters of a local light
@@ -36,7 +38,7 @@ typedef struct tyni_piece {
 typedef struct tyni_row {
     int32_t count;             /* of pieces; 0: the slice misses all maps */
     int32_t columns;           /* of all pieces, one after the other */
-    const uint16_t *threshold; /* of these */
+    const uint16_t *threshold; /* of these; lit for a ray at position q if q < threshold */
     float p_start, p_scale;    /* position of a ray through p: (p - p_start) * p_scale */
     tyni_piece pieces[TYNI_ROW_PIECES];
 } tyni_row;

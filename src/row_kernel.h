@@ -13,34 +13,26 @@ TYNI_V_INLINE v_int TYNI_V(row_column)(const ends *e, v_float g, v_float z)
     return v_trunc(v_select(some, part, v_set(65535.0f)));
 }
 
-static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_course *c, const ends *e, int32_t first,
-                                           int32_t steps, uint16_t *threshold, float *split)
+static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cells *c, float from, const ends *e, int32_t steps,
+                                           uint16_t *threshold, float *split)
 {
-    const int32_t pitch = (int32_t)t->pitch, way = c->sign > 0.0f ? 1 : -1;
-    const int32_t along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
-    const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
     const uint16_t one = 1;
     /* of step 0, what lies before the row: its surface would be judged from behind the camera, where lit is dark */
-    v_float before = v_max(c->from - v_to_float(v_index()), v_set(0.0f));
+    v_float before = v_max(from - v_to_float(v_index()), v_set(0.0f));
     uint8_t low_first;
     memcpy(&low_first, &one, 1);
     for (int32_t k = 0; k < steps; k += v_n) {
         /* lanes behind the last step do it again */
         const v_int step = v_imin(v_iadd(v_iset(k), v_index()), v_iset(steps - 1));
-        const v_float at = v_to_float(step), from = c->minor + c->slope * at, to = c->minor + c->slope * (at + 1.0f);
-        const v_int a = v_imin(v_imax(v_floori(from), none), most), b = v_imin(v_imax(v_floori(to), none), most);
-        const v_int base = v_imul(v_iadd(v_iset(first), v_imul(step, v_iset(way))), v_iset(along));
-        const v_mask same = v_ieq(a, b);
-        v_int ta, tb;
-        v_float cut = v_set(1.0f);
-        if (!v_all(same)) /* |slope| <= 1: they are neighbours */
-            cut = v_select(same, cut, v_clamp((v_to_float(v_imax(a, b)) - from) / c->slope, v_set(0.0f), v_set(1.0f)));
-        ta = TYNI_V(row_column)(e, at + 0.5f * (before + cut), TYNI_V(door_texels)(t, v_iadd(base, v_imul(a, v_iset(aside)))));
+        const v_float at = v_to_float(step);
+        v_int ta, tb, cell[2];
+        v_float cut;
+        const v_mask same = TYNI_V(course_cells)(t, c, step, cell, &cut);
+        ta = TYNI_V(row_column)(e, at + 0.5f * (before + cut), TYNI_V(door_texels)(t, cell[0]));
         tb = ta;
         if (!v_all(same))
             tb = v_iselect(same, ta,
-                           TYNI_V(row_column)(e, at + 0.5f + 0.5f * v_max(before, cut),
-                                              TYNI_V(door_texels)(t, v_iadd(base, v_imul(b, v_iset(aside))))));
+                           TYNI_V(row_column)(e, at + 0.5f + 0.5f * v_max(before, cut), TYNI_V(door_texels)(t, cell[1])));
         v_store_n(split + k, cut, steps - k);
         v_istore_n(threshold + 2 * k, low_first ? v_ior(ta, v_shl(tb, 16)) : v_ior(tb, v_shl(ta, 16)), steps - k);
         before = v_set(0.0f);

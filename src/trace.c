@@ -107,23 +107,11 @@ static void run_bundle(const tyni_pass *p, const tyni_slice *slice, const tyni_f
     sigma[0] = p->medium.sigma[p->channels[0]];
     sigma[1] = p->medium.sigma[p->channels[p->count - 1]];
     s->stats->rays += b->count;
-    s->stats->looked += tyni_ray_bundle(b, finder, slice, &p->view, s->depth, p->frame->max_distance, p->lamp->outside, sigma);
+    s->stats->looked += tyni_ray_bundle(b, finder, slice, &p->view, s->depth, p->frame->max_distance, p->lamp, sigma);
+    s->stats->walks += tyni_ones32(b->coarse & ((2u << (b->count - 1)) - 1u));
     for (int32_t n = 0; n < b->count; n++) {
         s->value[0][b->sample[n]] = b->visible[0][n];
         s->value[1][b->sample[n]] = b->visible[1][n];
-    }
-    for (uint32_t bits = b->coarse; bits; bits &= bits - 1) {
-        int32_t n = tyni_ctz32(bits), j;
-        tyni_sight v;
-        float length, value[3];
-        if (n >= b->count)
-            break;
-        j = b->sample[n];
-        length = tyni_slice_sight(slice, &p->view, tyni_slice_p(slice, j), &v);
-        tyni_pass_walk(p, &v, s->depth[j] * length, value);
-        s->value[0][j] = value[0];
-        s->value[1][j] = value[1];
-        s->stats->walks++;
     }
 }
 

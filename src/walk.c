@@ -70,9 +70,10 @@ static float track_t(const track *k, float s)
 typedef struct traversal {
     const tyni_texels *texels;
     tyni_course course;
-    int32_t first, steps; /* the first step's texel along the major axis */
-    float rise;           /* 1 / slope */
-    float z, dz;          /* of step coordinates: z + k dz */
+    tyni_cells cells;
+    int32_t steps;
+    float rise;  /* 1 / slope */
+    float z, dz; /* of step coordinates: z + k dz */
 } traversal;
 
 /* 0: the course has no length, the ray stays in one texel. */
@@ -85,7 +86,7 @@ static TYNI_NOINLINE int traversal_begin(traversal *r, const tyni_map *map, cons
     v[1] = k->v + k->dv;
     tyni_course_begin(&r->course, u, v);
     r->texels = &map->texels;
-    r->steps = tyni_course_on(&r->course, r->texels, &r->first);
+    r->steps = tyni_course_on(&r->course, r->texels, &r->cells);
     r->rise = 1.0f / r->course.slope;
     length = r->course.to - r->course.from;
     if (!(length > 1e-6f))

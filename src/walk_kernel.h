@@ -8,7 +8,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_states)(const traversal *r, 
     const tyni_texels *t = r->texels;
     const tyni_course *c = &r->course;
     const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
-    const int32_t way = c->sign > 0.0f ? along : -along, base = r->first * along;
+    const int32_t way = c->sign > 0.0f ? along : -along, base = r->cells.first * along;
     const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
     const v_float zero = v_set(0.0f);
     uint32_t in0 = 0, out0 = 0, in1 = 0, out1 = 0;
@@ -69,7 +69,7 @@ TYNI_V_INLINE v_float TYNI_V(walk_place)(const traversal *r, v_int step, v_int s
     const tyni_course *c = &r->course;
     const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
     const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
-    const v_int texel = v_iadd(v_imul(step, v_iset(c->sign > 0.0f ? along : -along)), v_iset(r->first * along));
+    const v_int texel = v_iadd(v_imul(step, v_iset(c->sign > 0.0f ? along : -along)), v_iset(r->cells.first * along));
     const v_float at = v_to_float(step), from = c->minor + c->slope * at, to = c->minor + c->slope * (at + 1.0f);
     const v_int a = v_imin(v_imax(v_floori(from), none), most), b = v_imin(v_imax(v_floori(to), none), most);
     const v_float begin = v_max(at, v_set(c->from)), end = v_min(at + 1.0f, v_set(c->to));
@@ -128,7 +128,8 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_paces)(const traversal *r, i
     const tyni_texels *t = r->texels;
     const tyni_course *c = &r->course;
     const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
-    const int32_t way = c->sign > 0.0f ? along : -along, base = r->first * along, most = (c->across ? t->height : t->width) - 1;
+    const int32_t way = c->sign > 0.0f ? along : -along, base = r->cells.first * along,
+                  most = (c->across ? t->height : t->width) - 1;
     uint32_t word = 0;
     for (int32_t i = 0; i < 32 && (k + i) * pace < r->steps; i += v_n) {
         const v_float middle = (v_to_float(v_iadd(v_iset(k + i), v_index())) + 0.5f) * (float)pace;

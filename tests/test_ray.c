@@ -1,4 +1,6 @@
 /* test_ray.c - the ways to find a ray's lit columns: the same switches, so the same bytes. */
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "line.h"
@@ -9,6 +11,7 @@
 #include "sweep.h"
 #include "test.h"
 #include "tree.h"
+#include "walk.h"
 
 enum { STEPS = 700, COLUMNS = 2 * STEPS, SAMPLES = 400 };
 
@@ -68,7 +71,6 @@ static void set_up(bench *b, int pieces, int falling)
             continue;
         }
         p->first = 2 * from;
-        p->threshold = b->threshold + 2 * from;
         p->split = b->split + from;
         p->steps = count;
         p->to = (float)count;
@@ -112,7 +114,8 @@ static void untraversed(const bench *b, float p, const tyni_integral *it, const 
         from = from > 0 ? from : 0;
         to = to < (float)piece->steps ? to : (float)piece->steps;
         for (int32_t c = first; c <= last; c++)
-            tyni_meter_lit(&m, position < piece->threshold[c], ((c == first ? from : tyni_row_edge(piece, c)) - r.c) / r.d);
+            tyni_meter_lit(&m, position < b->row.threshold[piece->first + c],
+                           ((c == first ? from : tyni_row_edge(piece, c)) - r.c) / r.d);
         tyni_meter_lit(&m, m.outside, (to - r.c) / r.d);
     }
     tyni_meter_end(&m);
@@ -271,8 +274,71 @@ static void test_tree_work(void)
     CHECK(nodes < columns / 2);
 }
 
+/* A bundle's rays where all are coarse: what an exact walk of each finds. */
+static void test_coarse(void)
+{
+    static uint16_t threshold[2 * 6 * 260];
+    static float split[6 * 260], depth[64 + 16];
+    static tyni_lamp lamp;
+    static tyni_row row;
+    static tyni_bundle bundle;
+    tyni_finder f = {&row, 0, TYN_RAYS_COLUMNS, NULL, NULL, 0.0f, NULL};
+    TEST("coarse rays of a bundle are exact walks");
+    tyni_lanes_choose(0, &f.isa);
+    for (int n = 0; n < stock_count; n++) {
+        static const int32_t channels[3] = {0, 1, 2};
+        const float sigma[2] = {0.02f, 0.3f};
+        rig *r = rig_stock(stock_list[n].name, 64, 48, 256);
+        tyni_medium medium;
+        tyni_view view;
+        tyni_slices slices;
+        double sum = 0, most = 0;
+        int rays = 0;
+        tyni_view_camera(&view, &r->camera, 64, 48);
+        tyni_view_lamp(&lamp, &r->light[0], &view);
+        memset(&slices, 0, sizeof slices);
+        memset(&medium, 0, sizeof medium);
+        medium.sigma[0] = sigma[0];
+        medium.sigma[1] = medium.sigma[2] = sigma[1];
+        if (lamp.kind == TYN_LIGHT_DIRECTIONAL && !lamp.no_epipole && !tyni_view_coloured(&lamp))
+            tyni_slice_layout(&slices, &lamp, 64, 48, 64, 1);
+        for (int32_t i = 0; i < slices.count; i++) {
+            tyni_slice slice;
+            tyni_slice_line(&slice, &slices, &lamp, &view, i);
+            for (int32_t j = slice.first; j <= slice.last; j++)
+                depth[j] = test_random_float(0, view.far_depth);
+            if (slice.first > slice.last)
+                continue;
+            tyni_row_build(&row, f.isa, threshold, split, 6 * 260, &slice, &lamp, &view, 1e4f);
+            memset(&bundle, 0, sizeof bundle);
+            for (int32_t j = slice.first; j <= slice.last && bundle.count < TYNI_RAY_BUNDLE; j += 1 + (int)(test_random() % 4u))
+                bundle.sample[bundle.count++] = j;
+            tyni_ray_bundle(&bundle, &f, &slice, &view, depth, 0.0f, &lamp, sigma);
+            for (int32_t k = 0; k < bundle.count; k++, rays++) {
+                tyni_sight v;
+                tyni_integral it;
+                float lit[3], all[3], length = tyni_slice_sight(&slice, &view, tyni_slice_p(&slice, bundle.sample[k]), &v);
+                tyni_integral_begin(&it, &medium, &lamp, &v, 0.0f, depth[bundle.sample[k]] * length, channels, 2);
+                tyni_walk_ray(TYN_ISA_SCALAR, &lamp, &it, &v, 1, lit);
+                tyni_integral_at(&it, it.t1, all);
+                for (int c = 0; c < 2; c++) {
+                    double off = fabs((double)bundle.visible[c][k] - (double)lit[c] / (double)all[c]);
+                    CHECK(bundle.visible[c][k] >= 0.0f && bundle.visible[c][k] <= 1.0f);
+                    sum += off;
+                    most = off > most ? off : most;
+                }
+            }
+        }
+        if (rays)
+            printf("  %-22s %d rays, mean %.2e, most %.2e\n", stock_list[n].name, rays, sum / (2 * rays), most);
+        CHECK(sum <= 1e-6 * 2 * rays && most < 1e-3);
+        rig_free(r);
+    }
+}
+
 void test_ray(void)
 {
+    test_coarse();
     test_finders();
     test_tree_bounds();
     test_sweep_bits();
