@@ -100,28 +100,6 @@ static int gather_shear(const tyni_field *field, const tyni_slices *slices, floa
     return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
 
-/* How many samples away. */
-#define BESIDE 4
-
-int tyni_gather_beside(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
-{
-    float f;
-    int32_t line, sample, r;
-    if (!place_in(slices, x, y, &line, &f, &sample, &r))
-        return 0;
-    for (int32_t away = 1; away <= BESIDE; away++) {
-        sum s = {0.0f, 0.0f, 0.0f, 0.0f};
-        for (int32_t way = -away; way <= away; way += 2 * away) {
-            int32_t at = tyni_clampi(sample + way, 0, field->pitch - 1);
-            tap(&s, field, line, at, depth, 1.0f - f);
-            tap(&s, field, line + 1, at, depth, f);
-        }
-        if (settle(&s, TYNI_GATHER_ENOUGH, value))
-            return 1;
-    }
-    return 0;
-}
-
 /* A pixel's place on a line, in samples. */
 static float place_on(const tyni_spoke *spoke, float x, float y)
 {

@@ -46,10 +46,6 @@ float tyni_gather_threshold(float threshold, const tyni_view *view, const tyni_l
 int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
                       float depth, float value[3]);
 
-/* Shear grid: where neither line has the pixel's surface at its place, they may have it next door, as ED10's taps look for it.
- */
-int tyni_gather_beside(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3]);
-
 /* The same as tyni_gather_lines on a grid: 2 x 2 points. */
 int tyni_gather_grid(const tyni_grid *grid, float x, float y, float depth, float value[3]);
 

@@ -183,24 +183,28 @@ TYNI_V_INLINE void TYNI_V(pixel_call)(const tyni_pass *p, const run *r, const ty
     }
 }
 
-/* The slice coordinate, 0 .. count - 1, of pixels first .. end - 1 of the run, all in one sector of the shear grid: into
- * value[0]. In a round of its own, so that how many lines a vector needs is known long before its turn. */
+/* The slice coordinate, 0 .. count - 1, of pixels x of row y in a sector of the shear grid. */
+TYNI_V_INLINE v_float TYNI_V(pixel_place)(const tyni_pass *p, int32_t y, const tyni_sector *sector, v_int x)
+{
+    const tyni_slices *g = &p->slices;
+    const float py = (float)y + 0.5f, dy = py * g->ew - g->ey, inverse = 1.0f / sector->spacing;
+    const float slant = (sector->border - py) / dy;
+    const v_float px = v_to_float(x) + 0.5f, dx = px * g->ew - g->ex;
+    v_float k;
+    if (sector->along_y)
+        k = px + dx * slant;
+    else
+        k = py + dy * (sector->border - px) / dx;
+    return v_clamp((k - sector->first) * inverse, v_set(0.0f), v_set((float)(sector->count - 1)));
+}
+
+/* Of pixels first .. end - 1 of the run, all in one sector: into value[0]. In a round of its own, so that how many lines a
+ * vector needs is known long before its turn. */
 static TYNI_V_TARGET void TYNI_V(pixel_places)(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first,
                                                int32_t end)
 {
-    const tyni_slices *g = &p->slices;
-    const float py = (float)r->y + 0.5f, dy = py * g->ew - g->ey, inverse = 1.0f / sector->spacing;
-    const float slant = (sector->border - py) / dy;
-    for (int32_t i = first; i < end; i += v_n) {
-        const v_float px = v_to_float(v_iadd(v_iset(r->x + i), v_index())) + 0.5f, dx = px * g->ew - g->ex;
-        v_float k;
-        if (sector->along_y)
-            k = px + dx * slant;
-        else
-            k = py + dy * (sector->border - px) / dx;
-        k = v_clamp((k - sector->first) * inverse, v_set(0.0f), v_set((float)(sector->count - 1)));
-        v_store_n(r->value[0] + i, k, end - i);
-    }
+    for (int32_t i = first; i < end; i += v_n)
+        v_store_n(r->value[0] + i, TYNI_V(pixel_place)(p, r->y, sector, v_iadd(v_iset(r->x + i), v_index())), end - i);
     if (v_n > 1 && !sector->along_y && r->y % TYNI_PIXEL_BAND == 0)
         TYNI_V(pixel_call)(p, r, sector, first, end);
 }
@@ -215,9 +219,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p,
     const int32_t stride = p->slices.stride, edge = p->slices.width - 1;
     const float step = 1.0f / (float)stride;
     const int local = tyni_view_kind(p->lamp) != TYN_LIGHT_DIRECTIONAL;
-    int32_t shift = 0;
-    while (1 << shift < stride)
-        shift++;
+    const int32_t shift = shift_of(&p->slices);
     for (int32_t i = first; i < end; i += v_n) {
         const int32_t n = end - i, place = along_y ? own.y : own.x + i, base = place >> shift;
         /* a second sample where there are pixels between two */
