@@ -185,6 +185,8 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
     }
     for (int32_t w = 0; w < words; w++) {
         fresh[w] &= ~rays[w];
+        if (!fresh[w])
+            continue;
         rays[w] |= fresh[w];
         count += tyni_ones32(fresh[w]);
     }
