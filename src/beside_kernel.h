@@ -1,4 +1,5 @@
-/* beside_kernel.h - a template: samples beside the place of pixels that fit none there, for pixel.c. As ED10's taps look for them.
+/* beside_kernel.h - a template: samples beside the place of pixels that fit none there, for pixel.c. As ED10's taps look for
+ * them.
  */
 
 /* How many samples away. */

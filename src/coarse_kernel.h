@@ -43,12 +43,12 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_set_out)(const tyni_bundle *b
     w->last = tyni_mini((int32_t)last, piece->steps - 1);
 }
 
-/* Texels of steps k .. k + PACES - 1, and where they end. */
-TYNI_V_INLINE void TYNI_V(ray_texels)(const tyni_piece *piece, const tyni_texels *t, int32_t k, float z[2 * PACES],
-                                      float end[2 * PACES])
+/* Texels of so many steps from k on, at most PACES, and where they end. */
+TYNI_V_INLINE void TYNI_V(ray_texels)(const tyni_piece *piece, const tyni_texels *t, int32_t k, int32_t steps,
+                                      float z[2 * PACES], float end[2 * PACES])
 {
     float part[3][PACES];
-    for (int32_t i = 0; i < PACES; i += v_n) {
+    for (int32_t i = 0; i < steps; i += v_n) {
         const v_int step = v_imin(v_iadd(v_iset(k + i), v_index()), v_iset(piece->steps - 1));
         v_int cell[2];
         v_float cut;
@@ -57,7 +57,7 @@ TYNI_V_INLINE void TYNI_V(ray_texels)(const tyni_piece *piece, const tyni_texels
         v_store(part[1] + i, TYNI_V(door_texels)(t, cell[1]));
         v_store(part[2] + i, cut);
     }
-    for (int32_t i = 0; i < PACES; i++) {
+    for (int32_t i = 0; i < steps; i++) {
         z[2 * i] = part[0][i];
         z[2 * i + 1] = part[1][i];
         end[2 * i] = (float)(k + i) + part[2][i];
@@ -71,12 +71,12 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_pass)(tyni_bundle *b, const t
                                                          int32_t k, int outside, const float sigma[2], paces *w)
 {
     const int flat = is_flat(piece);
-    const int32_t count = 2 * tyni_mini(w->last + 1 - k, PACES);
+    const int32_t steps = tyni_mini(w->last + 1 - k, PACES);
     float depth[2 * PACES], end[2 * PACES], rate[2];
     uint32_t on_word = 0;
     rate[0] = TYNI_V(ray_rate)(sigma[0]);
     rate[1] = TYNI_V(ray_rate)(sigma[1]);
-    TYNI_V(ray_texels)(piece, t, k, depth, end);
+    TYNI_V(ray_texels)(piece, t, k, steps, depth, end);
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
         const v_float from = v_load(b->from + i), until = v_load(b->until + i), zero = v_set(0.0f);
         const v_float base = v_load(w->z + i), rise = v_load(w->rise + i);
@@ -84,7 +84,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_pass)(tyni_bundle *b, const t
         v_mask on = TYNI_V(ray_mask)(w->on, i), turn;
         if (v_none(v_lt(at, until)))
             continue;
-        for (int32_t e = 0; e < count; e++) {
+        for (int32_t e = 0; e < 2 * steps; e++) {
             const v_float next = v_clamp(v_set(end[e]), at, until), z1 = v_max(base + rise * (next - from), zero);
             const v_mask moves = v_lt(at, next), lit0 = v_ge(z, v_set(depth[e])), lit1 = v_ge(z1, v_set(depth[e]));
             v_mask in = v_mand(moves, lit0), out = v_mand(moves, lit1);
