@@ -95,10 +95,10 @@ static inline float tyni_absf(float x)
 {
     return x < 0.0f ? -x : x;
 }
-/* NaN gives low. */
+/* NaN gives low; low > high gives high. */
 static inline float tyni_clampf(float x, float low, float high)
 {
-    return x > low ? (x < high ? x : high) : low;
+    return tyni_minf(tyni_maxf(x, low), high);
 }
 
 /* Not NaN and not infinite. */

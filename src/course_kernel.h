@@ -5,14 +5,15 @@
 TYNI_V_INLINE v_mask TYNI_V(course_cells)(const tyni_texels *t, const tyni_cells *c, v_int step, v_int cell[2], v_float *cut)
 {
     const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
-    const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
+    const v_int most = v_iset((c->across ? t->height : t->width) - 1);
+    const v_float zero = v_set(0.0f);
     const v_float at = v_to_float(step), from = c->minor + c->slope * at, to = c->minor + c->slope * (at + 1.0f);
-    const v_int a = v_imin(v_imax(v_floori(from), none), most), b = v_imin(v_imax(v_floori(to), none), most);
+    const v_int a = v_imin(v_trunc(v_max(from, zero)), most), b = v_imin(v_trunc(v_max(to, zero)), most);
     const v_int base = v_imul(v_iadd(v_iset(c->first), v_imul(step, v_iset(c->way))), v_iset(along));
     const v_mask one = v_ieq(a, b);
     *cut = v_set(1.0f);
     if (!v_all(one)) /* |slope| <= 1: they are neighbours */
-        *cut = v_select(one, *cut, v_clamp((v_to_float(v_imax(a, b)) - from) / c->slope, v_set(0.0f), v_set(1.0f)));
+        *cut = v_select(one, *cut, v_clamp((v_to_float(v_imax(a, b)) - from) / c->slope, zero, v_set(1.0f)));
     cell[0] = v_iadd(base, v_imul(a, v_iset(aside)));
     cell[1] = v_iadd(base, v_imul(b, v_iset(aside)));
     return one;

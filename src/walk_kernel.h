@@ -24,11 +24,11 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_states)(const traversal *r, 
         if (v_n > 1 || i == 0) { /* one lane has them: a step begins where the one before it ends */
             from = c->minor + c->slope * at;
             z0 = v_max(r->z + at0 * r->dz, zero);
-            a = v_imin(v_imax(v_floori(from), none), most);
+            a = v_imin(v_trunc(v_max(from, v_set(0.0f))), most);
         }
         to = c->minor + c->slope * (at + 1.0f);
         z2 = v_max(r->z + at2 * r->dz, zero);
-        b = v_imin(v_imax(v_floori(to), none), most);
+        b = v_imin(v_trunc(v_max(to, v_set(0.0f))), most);
         one = v_ieq(a, b);
         v_float depth = TYNI_V(door_texels)(t, v_iadd(texel, v_imul(a, v_iset(aside)))), z1 = z2;
         v_mask in, out;
@@ -71,7 +71,7 @@ TYNI_V_INLINE v_float TYNI_V(walk_place)(const traversal *r, v_int step, v_int s
     const v_int most = v_iset((c->across ? t->height : t->width) - 1), none = v_iset(0);
     const v_int texel = v_iadd(v_imul(step, v_iset(c->sign > 0.0f ? along : -along)), v_iset(r->cells.first * along));
     const v_float at = v_to_float(step), from = c->minor + c->slope * at, to = c->minor + c->slope * (at + 1.0f);
-    const v_int a = v_imin(v_imax(v_floori(from), none), most), b = v_imin(v_imax(v_floori(to), none), most);
+    const v_int a = v_imin(v_trunc(v_max(from, v_set(0.0f))), most), b = v_imin(v_trunc(v_max(to, v_set(0.0f))), most);
     const v_float begin = v_max(at, v_set(c->from)), end = v_min(at + 1.0f, v_set(c->to));
     const v_float cut = v_select(v_ieq(a, b), end, v_clamp(at + (v_to_float(v_imax(a, b)) - from) * r->rise, begin, end));
     const v_mask second = v_igt(state, v_iset(1)), passes = v_igt(v_iand(state, v_iset(1)), none);
@@ -135,7 +135,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(walk_paces)(const traversal *r, i
         const v_float middle = (v_to_float(v_iadd(v_iset(k + i), v_index())) + 0.5f) * (float)pace;
         const v_float at = v_clamp(middle, v_set(c->from), v_set(c->to));
         const v_int step = v_imin(v_trunc(at), v_iset(r->steps - 1));
-        const v_int beside = v_imin(v_imax(v_floori(c->minor + c->slope * at), v_iset(0)), v_iset(most));
+        const v_int beside = v_imin(v_trunc(v_max(c->minor + c->slope * at, v_set(0.0f))), v_iset(most));
         const v_int texel = v_iadd(v_iadd(v_imul(step, v_iset(way)), v_iset(base)), v_imul(beside, v_iset(aside)));
         const v_float z = v_max(r->z + at * r->dz, v_set(0.0f));
         word |= v_word(v_ge(z, TYNI_V(door_texels)(t, texel))) << i;

@@ -18,7 +18,7 @@ TYNI_V_INLINE v_float v_abs(v_float x)
 }
 TYNI_V_INLINE v_float v_clamp(v_float x, v_float low, v_float high)
 {
-    return v_select(v_gt(x, low), v_min(x, high), low);
+    return v_min(v_max(x, low), high);
 }
 TYNI_V_INLINE v_mask v_igt(v_int a, v_int b)
 {

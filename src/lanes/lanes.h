@@ -22,7 +22,7 @@
  * Floats:
  *     v_sqrt(x) v_abs(x)                 abs as tyni_absf: -0 stays
  *     v_min(a, b) v_max(a, b)            a < b ? a : b and a > b ? a : b: NaN in a gives b, NaN in b gives NaN, of zeros b
- *     v_clamp(x, low, high)              as tyni_clampf: NaN gives low
+ *     v_clamp(x, low, high)              as tyni_clampf: NaN gives low, low > high gives high
  *     v_lt v_le v_gt v_ge v_eq v_ne      masks; NaN: all false but v_ne
  *     v_select(m, a, b)                  m ? a : b
  *     v_exp(x) v_fog(x) v_log(x)         the bits of tyni_num_exp, tyni_num_fog, tyni_num_log
