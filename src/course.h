@@ -4,6 +4,7 @@
 #define TYNI_COURSE_H
 
 #include "door.h"
+#include "lanes/lanes.h"
 
 #include "base.h"
 
@@ -33,6 +34,11 @@ void tyni_course_begin(tyni_course *course, const float u[2], const float v[2]);
 int32_t tyni_course_on(const tyni_course *course, const tyni_texels *texels, tyni_cells *cells);
 
 #define TYNI_KERNEL "course_kernel.h"
+#include "lanes/each.h"
+
+/* Who follows a course reads texels side by side. Here and not in door.h, which most files include: compilers take half a
+ * second over the intrinsics. */
+#define TYNI_KERNEL "door_kernel.h"
 #include "lanes/each.h"
 
 #endif

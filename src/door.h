@@ -4,7 +4,6 @@
 #define TYNI_DOOR_H
 
 #include "base.h"
-#include "lanes/lanes.h"
 #include "vec.h"
 
 /* A depth image and how to read it. */
@@ -60,8 +59,5 @@ static inline float tyni_texels_at(const tyni_texels *t, int32_t x, int32_t y)
 {
     return tyni_texels_z(t, t->pixels + t->pitch * y + (ptrdiff_t)t->bytes * x);
 }
-
-#define TYNI_KERNEL "door_kernel.h"
-#include "lanes/each.h"
 
 #endif
