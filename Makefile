@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 
 # No contraction: a fused multiply-add rounds once where others round twice, and the pictures must be the same everywhere.
-WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
+WARNINGS = -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Wvla -Werror
 FLAGS = -std=c99 $(WARNINGS) -ffp-contract=off -fno-math-errno -Iinclude -Isrc $(CFLAGS)
 THREADS = -pthread
 POSIX = -D_POSIX_C_SOURCE=200809L $(THREADS) -Iports/posix

@@ -13,7 +13,6 @@ intrinsics='emmintrin.h immintrin.h arm_neon.h wasm_simd128.h'
 order='base num vec arena check lanes config door jobs slide view art fit helpers cascade rectify medium raster slice border course row tree sweep sample line
     meter walk ray query columns knot fourier lookup prefilter entry gather composite pass debug trace chart shade pixel quad frame tyndall'
 
-FLAGS="-std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror -ffp-contract=off -Iinclude -Isrc"
 work=$B/proofs
 sources=$(ls src/*.c src/*/*.c 2>/dev/null)
 headers=$(ls src/*.h src/*/*.h 2>/dev/null)
@@ -64,104 +63,82 @@ level raster 'tyn_render|tyni_(frame|pixel|quad|trace|chart|pass|slice|border|ro
 
 # ---- what it includes ----
 
-rank() { # of a file below src/
-    room=${1#src/}
-    case $room in
-    */*) room=${room%%/*} ;;
-    *) room=${room%.*} room=${room%_kernel} ;;
-    esac
-    rank=0
-    for r in $order; do
-        rank=$((rank + 1))
-        [ "$r" = "$room" ] && return
-    done
-    rank=0
+# shellcheck disable=SC2086
+empty 'files include their own header, base.h, and rooms above them' "$(awk -v order="$(echo $order)" \
+    -v system_headers=" $system_headers " -v intrinsics=" $intrinsics " '
+function room_of(path) {
+    path = substr(path, 5)
+    if (sub(/\/.*/, "", path)) return path
+    sub(/\..*/, "", path)
+    sub(/_kernel$/, "", path)
+    return path
 }
-
-includes() { # of a file, resolved to src/...
-    sed -n -e 's/^[ \t]*#[ \t]*include[ \t]*"\([^"]*\)".*/\1/p' -e 's/^#define TYNI_KERNEL "\([^"]*\)".*/\1/p' "$1" | while read -r name; do
-        [ "$name" = tyndall.h ] && continue
-        dir=${1%/*}
-        path=$(echo "$dir/$name" | sed -e 's|[a-z0-9_]*/\.\./||')
-        [ -f "$path" ] || path=src/$name
-        echo "$path"
-    done
+function resolve(name, from) {
+    sub(/[^\/]*$/, "", from)
+    from = from name
+    sub(/[a-z0-9_]*\/\.\.\//, "", from)
+    return from in known ? from : "src/" name
 }
-
-complaints=
-for file in $sources $headers; do
-    rank "$file"
-    own=$rank own_room=$room
-    [ "$own" -gt 0 ] || complaints="$complaints$file: no room of this name in the order of flow (tests/proofs.sh)
-"
-    list=$(includes "$file")
-    case $file in
-    *.c)
-        header=${file%.c}.h
-        first=$(grep -m 1 '^#include' "$file" | sed 's/^#include [<"]\(.*\)[>"].*/\1/')
-        if [ -f "$header" ] && [ "${first##*/}" != "${header##*/}" ]; then
-            complaints="$complaints$file: its own header is not the first include
-"
-        fi
-        # A file of a room with a folder has the room's header, and base.h from that.
-        case $file in src/*/*) list="$list $(includes "src/$room/$room.h" 2>/dev/null)" ;; esac
-        echo "$list" | tr ' ' '\n' | grep -qx 'src/base.h' || complaints="$complaints$file: does not include base.h
-"
-        ;;
-    esac
-    for path in $list; do
-        rank "$path"
-        if [ "$rank" -gt "$own" ]; then
-            complaints="$complaints$file includes $path, which comes after it
-"
-        fi
-        if [ "$room" = raster ] && [ "$own_room" != raster ]; then
-            complaints="$complaints$file includes $path: the levels do not know each other
-"
-        fi
-        if [ "$room" = frame ] && [ "$own_room" != frame ] && [ "$own_room" != tyndall ]; then
-            complaints="$complaints$file includes $path
-"
-        fi
-    done
-    for name in $(sed -n 's/^[ \t]*#[ \t]*include[ \t]*<\([^>]*\)>.*/\1/p' "$file"); do
-        case " $system_headers " in *" $name "*) continue ;; esac
-        case "$file $intrinsics" in src/lanes/*" $name"*) continue ;; esac
-        complaints="$complaints$file includes <$name>
-"
-    done
-done
-empty 'files include their own header, base.h, and rooms above them' "$complaints"
+function base(path) { sub(/.*\//, "", path); return path }
+function includes_base(file) { return index(list[file], " src/base.h ") }
+function source(file, room,    header) {
+    header = file
+    sub(/c$/, "h", header)
+    if (header in known && first[file] != base(header)) print file ": its own header is not the first include"
+    # A file of a room with a folder has the header of the room, and base.h from that.
+    if (!includes_base(file) && !includes_base("src/" room "/" room ".h")) print file ": does not include base.h"
+}
+BEGIN {
+    n = split(order, rooms, " ")
+    for (i = 1; i <= n; i++) rank[rooms[i]] = i
+    for (i = 1; i < ARGC; i++) { known[ARGV[i]] = 1; list[ARGV[i]] = " " }
+}
+/^#include/ && !(FILENAME in first) { split($0, part, /[<>"]/); first[FILENAME] = base(part[2]) }
+/^[ \t]*#[ \t]*include[ \t]*"/ || /^#define TYNI_KERNEL "/ {
+    split($0, part, "\"")
+    if (part[2] != "tyndall.h") list[FILENAME] = list[FILENAME] resolve(part[2], FILENAME) " "
+}
+/^[ \t]*#[ \t]*include[ \t]*</ {
+    split($0, part, /[<>]/)
+    if (!index(system_headers, " " part[2] " ") && !(FILENAME ~ /^src\/lanes\// && index(intrinsics, " " part[2] " ")))
+        print FILENAME " includes <" part[2] ">"
+}
+END {
+    for (f = 1; f < ARGC; f++) {
+        file = ARGV[f]
+        own = room_of(file)
+        if (!(own in rank)) print file ": no room of this name in the order of flow (tests/proofs.sh)"
+        if (file ~ /c$/) source(file, own)
+        n = split(list[file], path, " ")
+        for (i = 1; i <= n; i++) {
+            room = room_of(path[i])
+            if (rank[room] > rank[own]) print file " includes " path[i] ", which comes after it"
+            if (room == "raster" && own != "raster") print file " includes " path[i] ": the levels do not know each other"
+            if (room == "frame" && own != "frame" && own != "tyndall") print file " includes " path[i]
+        }
+    }
+}' $sources $headers)"
 
 # ---- what it computes with ----
+# (Warnings tell of a VLA and of double constants: the Makefile's, and those of proofs_calls.sh.)
 
-# The code without comments and strings.
-bare() {
-    sed -e 's/"[^"]*"/""/g' "$1" | awk '{
-        out = ""
-        while (length($0)) {
-            if (inside) { i = index($0, "*/"); if (!i) { $0 = ""; break } $0 = substr($0, i + 2); inside = 0; continue }
-            i = index($0, "/*")
-            if (!i) { out = out $0; break }
-            out = out substr($0, 1, i - 1); $0 = substr($0, i + 2); inside = 1
-        }
-        print out
-    }'
-}
-found=
-for file in $sources $headers include/tyndall.h; do
-    lines=$(bare "$file" | grep -nwE 'double|long double|malloc|calloc|realloc|free|alloca|printf|pthread_[a-z]*' | sed "s|^|$file:|")
-    [ -z "$lines" ] || found="$found$lines
-"
-done
-empty 'no double, no heap, no output in the sources' "$found"
-
-is_gcc=
-case $($CC --version 2>/dev/null | head -n 1) in *[cC]lang*) ;; *) is_gcc=1 ;; esac
-strict="-Wvla -Walloca -Wfloat-conversion"
-[ -z "$is_gcc" ] || strict="$strict -Wunsuffixed-float-constants"
+# Of the code without comments and strings.
 # shellcheck disable=SC2086
-quiet 'no VLA, no alloca, no double constants' $CC $FLAGS -O2 $strict -fsyntax-only $sources
+empty 'no double, no heap, no output in the sources' "$(awk '
+FNR == 1 { inside = 0 }
+{
+    gsub(/"[^"]*"/, "\"\"")
+    out = ""
+    while (length($0)) {
+        if (inside) { i = index($0, "*/"); if (!i) break; $0 = substr($0, i + 2); inside = 0; continue }
+        i = index($0, "/*")
+        if (!i) { out = out $0; break }
+        out = out substr($0, 1, i - 1); $0 = substr($0, i + 2); inside = 1
+    }
+    if (out ~ /(^|[^A-Za-z_0-9])(double|malloc|calloc|realloc|free|alloca|printf|pthread_[a-z]*)([^A-Za-z_0-9]|$)/)
+        print FILENAME ":" FNR ":" out
+}' $sources $headers include/tyndall.h)"
+
 case $(uname -m) in
 x86_64 | i?86)
     empty 'no double arithmetic in the machine code' "$(objdump -d "$B/libtyndall.a" |
