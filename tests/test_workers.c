@@ -89,7 +89,7 @@ static void run_crowd(void *context, tyn_job job, void *argument, int32_t count)
 
 static void test_any_workers(void)
 {
-    enum { W = 50, H = 35 };
+    enum { W = 34, H = 23 };
     static const char *const scenes[] = {"sun ahead", "lamp in view", "sun parallel to the picture"};
     TEST("tyn_render: the same bytes for any workers in any order");
     for (int n = 0; n < 3; n++) {
