@@ -66,7 +66,7 @@ done
 empty '--stats' "$(grep -q '^rays ' out.txt || cat out.txt)"
 if [ -r "$TYN_SHARED/reference/05_stained.scene" ]; then
     for scene in 01_pillars 02_grating 05_stained 07_cage 08_terrain; do
-        same "$scene" "$TYN_SHARED/reference/$scene.scene" --size 240x135 --shadow-size 512
+        same "$scene" "$TYN_SHARED/reference/$scene.scene" --size 120x68 --shadow-size 256
     done
 else
     skip 'no reference scenes'
