@@ -70,7 +70,7 @@ have() {
 # part COMMAND...: a script or program with a closing line of its own, which is added up and taken out of what is shown.
 part() {
     echo "== $*"
-    part_log=$B/part.log
+    part_log=${part_logs:-$B}/part.log
     "$@" >"$part_log" 2>&1
     part_status=$?
     part_closing=$(tail -n 1 "$part_log" | sed -n 's/^\([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed$/\1 \2/p')
