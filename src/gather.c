@@ -33,11 +33,11 @@ static void add(sum *s, const tyni_field *field, int32_t line, int32_t sample, f
             weight * tyni_entry_third_value(field->thirds[(ptrdiff_t)line * field->pitch + sample], field->scales[2][line]);
 }
 
-static void tap(sum *s, const tyni_field *field, int32_t line, int32_t sample, float depth, float weight)
+static void tap(sum *s, const tyni_field *field, int32_t line, int32_t sample, float depth, float threshold, float weight)
 {
     uint32_t entry = field->entries[(ptrdiff_t)line * field->pitch + sample];
     if (tyni_entry_code(entry) && weight > 0.0f)
-        add(s, field, line, sample, weight * depth_weight(depth, entry, field->threshold));
+        add(s, field, line, sample, weight * depth_weight(depth, entry, threshold));
 }
 
 static int settle(const sum *s, float least, float value[3])
@@ -80,7 +80,8 @@ float tyni_gather_threshold(float threshold, const tyni_view *view, const tyni_l
 }
 
 /* tyndall's shear grid: a pixel lies on the samples' own column, between two lines. */
-static int gather_shear(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
+static int gather_shear(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float threshold,
+                        float value[3])
 {
     sum s = {0.0f, 0.0f, 0.0f, 0.0f};
     float f;
@@ -88,14 +89,14 @@ static int gather_shear(const tyni_field *field, const tyni_slices *slices, floa
     if (!place_in(slices, x, y, &line, &f, &sample, &r))
         return 0;
     if (!r) {
-        tap(&s, field, line, sample, depth, 1.0f - f);
-        tap(&s, field, line + 1, sample, depth, f);
+        tap(&s, field, line, sample, depth, threshold, 1.0f - f);
+        tap(&s, field, line + 1, sample, depth, threshold, f);
     } else {
         float g = (float)r / (float)slices->stride;
-        tap(&s, field, line, sample, depth, (1.0f - f) * (1.0f - g));
-        tap(&s, field, line + 1, sample, depth, f * (1.0f - g));
-        tap(&s, field, line, sample + 1, depth, (1.0f - f) * g);
-        tap(&s, field, line + 1, sample + 1, depth, f * g);
+        tap(&s, field, line, sample, depth, threshold, (1.0f - f) * (1.0f - g));
+        tap(&s, field, line + 1, sample, depth, threshold, f * (1.0f - g));
+        tap(&s, field, line, sample + 1, depth, threshold, (1.0f - f) * g);
+        tap(&s, field, line + 1, sample + 1, depth, threshold, f * g);
     }
     return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
@@ -107,7 +108,8 @@ static float place_on(const tyni_spoke *spoke, float x, float y)
 }
 
 /* IVB section 6.6: the samples on either side on the two nearest lines. */
-static int gather_ivb(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float value[3])
+static int gather_ivb(const tyni_field *field, const tyni_slices *slices, float x, float y, float depth, float threshold,
+                      float value[3])
 {
     sum s = {0.0f, 0.0f, 0.0f, 0.0f};
     int32_t slot[2];
@@ -122,8 +124,8 @@ static int gather_ivb(const tyni_field *field, const tyni_slices *slices, float 
         at = tyni_clampf(place_on(&slices->spokes[line], x, y), 0.0f, (float)(slices->samples - 1));
         j = tyni_mini((int32_t)at, slices->samples - 2);
         f = at - (float)j;
-        tap(&s, field, line, j, depth, weight * (1.0f - f));
-        tap(&s, field, line, j + 1, depth, weight * f);
+        tap(&s, field, line, j, depth, threshold, weight * (1.0f - f));
+        tap(&s, field, line, j + 1, depth, threshold, weight * f);
     }
     return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
@@ -172,7 +174,7 @@ static float lines_apart(const tyni_slices *slices, const int32_t line[2], float
  * farther of two lines counts less. `spacing`: pixels between taps, but at least one sample, since near the epipole lines are
  * closer together than samples. */
 static void along_line(sum *s, const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, int32_t line,
-                       const float pixel[2], float spacing, float depth)
+                       const float pixel[2], float spacing, float depth, float threshold)
 {
     const tyni_spoke *spoke = &slices->spokes[line];
     float square = spoke->ux * spoke->ux + spoke->uy * spoke->uy, at = place_on(spoke, pixel[0], pixel[1]), pitch;
@@ -188,13 +190,13 @@ static void along_line(sum *s, const tyni_gather *gather, const tyni_field *fiel
         dx = pixel[0] - (spoke->x + (float)j * spoke->ux / square);
         dy = pixel[1] - (spoke->y + (float)j * spoke->uy / square);
         r = sqrtf(dx * dx + dy * dy) / spacing;
-        add(s, field, line, j, radial(gather->kernel, r) * likeness(gather->kernel, depth, entry, field->threshold));
+        add(s, field, line, j, radial(gather->kernel, r) * likeness(gather->kernel, depth, entry, threshold));
     }
 }
 
 /* Two lines; where one has no fitting taps, the next outer one. */
 static int gather_ed10(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
-                       float depth, float value[3])
+                       float depth, float threshold, float value[3])
 {
     sum s = {0.0f, 0.0f, 0.0f, 0.0f};
     int32_t slot[2], near[2];
@@ -212,7 +214,7 @@ static int gather_ed10(const tyni_gather *gather, const tyni_field *field, const
             sum one = {0.0f, 0.0f, 0.0f, 0.0f};
             if (line < 0)
                 continue;
-            along_line(&one, gather, field, slices, line, pixel, spacing, depth);
+            along_line(&one, gather, field, slices, line, pixel, spacing, depth, threshold);
             s.low += one.low;
             s.high += one.high;
             s.third += one.third;
@@ -224,13 +226,13 @@ static int gather_ed10(const tyni_gather *gather, const tyni_field *field, const
 }
 
 int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
-                      float depth, float value[3])
+                      float depth, float threshold, float value[3])
 {
     if (TYNI_HAS(TYN_PART_GATHERS) && gather->way == TYN_GATHER_IVB)
-        return gather_ivb(field, slices, x, y, depth, value);
+        return gather_ivb(field, slices, x, y, depth, threshold, value);
     if (TYNI_HAS(TYN_PART_GATHERS) && gather->way == TYN_GATHER_ED10)
-        return gather_ed10(gather, field, slices, x, y, depth, value);
-    return gather_shear(field, slices, x, y, depth, value);
+        return gather_ed10(gather, field, slices, x, y, depth, threshold, value);
+    return gather_shear(field, slices, x, y, depth, threshold, value);
 }
 
 /* The 2 x 2 points around a pixel: the first one's column and row, and how far the pixel lies beyond it. */
@@ -244,7 +246,7 @@ static void cell_of(const tyni_grid *g, float x, float y, int32_t at[2], float f
     f[1] = gy - (float)at[1];
 }
 
-int tyni_gather_grid(const tyni_grid *g, float x, float y, float depth, float value[3])
+int tyni_gather_grid(const tyni_grid *g, float x, float y, float depth, float threshold, float value[3])
 {
     sum s = {0.0f, 0.0f, 0.0f, 0.0f};
     int32_t at[2];
@@ -253,7 +255,7 @@ int tyni_gather_grid(const tyni_grid *g, float x, float y, float depth, float va
     for (int32_t n = 0; n < 4; n++) {
         int32_t dx = n & 1, dy = n >> 1;
         if (at[0] + dx < g->columns && at[1] + dy < g->rows)
-            tap(&s, &g->field, at[1] + dy, at[0] + dx, depth, (dx ? f[0] : 1.0f - f[0]) * (dy ? f[1] : 1.0f - f[1]));
+            tap(&s, &g->field, at[1] + dy, at[0] + dx, depth, threshold, (dx ? f[0] : 1.0f - f[0]) * (dy ? f[1] : 1.0f - f[1]));
     }
     return settle(&s, TYNI_GATHER_ENOUGH, value);
 }
@@ -270,7 +272,7 @@ void tyni_gather_nearest(const tyni_grid *g, float x, float y, float depth, floa
         sum one = {0.0f, 0.0f, 0.0f, 0.0f};
         if (at[0] + dx >= g->columns || at[1] + dy >= g->rows)
             continue;
-        tap(&one, &g->field, at[1] + dy, at[0] + dx, depth, 1.0f);
+        tap(&one, &g->field, at[1] + dy, at[0] + dx, depth, g->field.threshold, 1.0f);
         if (one.weight > best.weight)
             best = one;
     }

@@ -19,7 +19,7 @@ typedef struct tyni_field {
     uint16_t *thirds;  /* the third channel; NULL: none */
     float *scales[3];  /* of each line, by channel */
     int32_t pitch;
-    float threshold; /* of relative depth */
+    float threshold; /* of relative depth; a pixel's own may be less */
 } tyni_field;
 
 /* Points on the screen at (i * step_x + 0.5, j * step_y + 0.5): a line of the field is a row of them. */
@@ -41,13 +41,13 @@ typedef struct tyni_gather {
 #define TYNI_GATHER_NARROW 1e-3f
 float tyni_gather_threshold(float threshold, const tyni_view *view, const tyni_lamp *lamp, float x, float y, float depth);
 
-/* Visibility at (x, y) with depth relative to far, as {low, high} or {red, green, blue}. 0: no sample fits, the pixel is
- * rejected. */
+/* Visibility at (x, y) with depth relative to far and this pixel's threshold, as {low, high} or {red, green, blue}. 0: no
+ * sample fits, the pixel is rejected. */
 int tyni_gather_lines(const tyni_gather *gather, const tyni_field *field, const tyni_slices *slices, float x, float y,
-                      float depth, float value[3]);
+                      float depth, float threshold, float value[3]);
 
 /* The same as tyni_gather_lines on a grid: 2 x 2 points. */
-int tyni_gather_grid(const tyni_grid *grid, float x, float y, float depth, float value[3]);
+int tyni_gather_grid(const tyni_grid *grid, float x, float y, float depth, float threshold, float value[3]);
 
 /* The point of these with the nearest depth, whatever it is: naive sub-sampling, which rejects nothing. */
 void tyni_gather_nearest(const tyni_grid *grid, float x, float y, float depth, float value[3]);

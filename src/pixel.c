@@ -37,12 +37,10 @@ typedef struct run {
  * stack that other stages need. */
 static TYNI_NOINLINE int visible(const tyni_pass *p, float px, float py, float at, float value[3])
 {
-    tyni_field lines = p->lines;
-    tyni_grid grid = p->grid;
-    lines.threshold = grid.field.threshold = tyni_gather_threshold(lines.threshold, &p->view, p->lamp, px, py, at);
+    const float threshold = tyni_gather_threshold(p->lines.threshold, &p->view, p->lamp, px, py, at);
     if (!tyni_pass_gridded(p))
-        return tyni_gather_lines(&p->gather, &lines, &p->slices, px, py, at, value);
-    if (tyni_gather_grid(&grid, px, py, at, value))
+        return tyni_gather_lines(&p->gather, &p->lines, &p->slices, px, py, at, threshold, value);
+    if (tyni_gather_grid(&p->grid, px, py, at, threshold, value))
         return 1;
     if (p->naive)
         tyni_gather_nearest(&p->grid, px, py, at, value);

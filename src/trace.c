@@ -307,8 +307,7 @@ void tyni_trace_coarse(tyni_pass *p)
 static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stats, uint64_t *correct_ns, float value[3])
 {
     int32_t x = tyni_mini((int32_t)px, p->view.width - 1), y = tyni_mini((int32_t)py, p->view.height - 1);
-    float length, depth = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y)), t0, t1, at;
-    tyni_field lines;
+    float length, depth = tyni_view_depth(&p->view, tyni_door_depth(&p->depth, x, y)), t0, t1, at, threshold;
     uint64_t start;
     tyni_sight v;
     length = tyni_view_sight(&p->view, px, py, &v);
@@ -323,9 +322,8 @@ static float point_value(const tyni_pass *p, float px, float py, tyn_stats *stat
         return t1 / length;
     }
     at = t1 / (length * p->view.far_depth);
-    lines = p->lines;
-    lines.threshold = tyni_gather_threshold(lines.threshold, &p->view, p->lamp, px, py, at);
-    if (!tyni_gather_lines(&p->gather, &lines, &p->slices, px, py, at, value)) {
+    threshold = tyni_gather_threshold(p->lines.threshold, &p->view, p->lamp, px, py, at);
+    if (!tyni_gather_lines(&p->gather, &p->lines, &p->slices, px, py, at, threshold, value)) {
         start = tyni_pass_now(p);
         tyni_pass_walk(p, &v, depth * length, value);
         *correct_ns += tyni_pass_now(p) - start;

@@ -263,8 +263,9 @@ static void test_beside(void)
         tyni_slice_layout(&slices, &lamp, SIZE, SIZE, LINES, 1);
         for (int32_t i = 0; i < 4 * SIZE; i++) {
             float along = (float)SIZE - 0.5f + (float)(i % 4) * 2.0f, across = (float)(i / 4) + 0.5f, value[3] = {0};
-            CHECK(tyni_gather_lines(&gather, &field, &slices, down ? across : along, down ? along : across, 0.5f, value) &&
-                  value[0] > 0.99f);
+            CHECK(
+                tyni_gather_lines(&gather, &field, &slices, down ? across : along, down ? along : across, 0.5f, 0.06f, value) &&
+                value[0] > 0.99f);
         }
     }
 }
