@@ -3,6 +3,7 @@
 #include "output.h"
 #include "file.h"
 #include "png.h"
+#include "pool.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -18,7 +19,7 @@
 /* What a signal must remove; it holds signals back who changes it, or has files halfway to their places. */
 static const char *volatile unfinished[OUTPUT_MAX];
 
-static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
+static const int signals[] = {POOL_SIGNALS, SIGPIPE};
 enum { SIGNALS = sizeof signals / sizeof *signals };
 
 static void on_signal(int number)

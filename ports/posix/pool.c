@@ -140,7 +140,7 @@ static void run(void *context, tyn_job job, void *argument, int32_t count)
 pool *pool_create(int32_t workers)
 {
     pool *p = calloc(1, sizeof *p);
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGALRM, SIGXCPU};
+    static const int signals[] = {POOL_SIGNALS, SIGALRM};
     sigset_t ours, old;
     if (!p)
         return NULL;
@@ -150,10 +150,9 @@ pool *pool_create(int32_t workers)
     p->executor.run = run;
     p->executor.context = p;
     p->executor.workers = 1;
-    /* These are for the thread that knows what to do then. */
     sigemptyset(&ours);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        sigaddset(&ours, numbers[i]);
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
+        sigaddset(&ours, signals[i]);
     pthread_sigmask(SIG_BLOCK, &ours, &old);
     for (int32_t i = 1; i < workers && i < TYN_MAX_WORKERS; i++) {
         p->workers[i].pool = p;

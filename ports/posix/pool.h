@@ -6,6 +6,10 @@
 
 typedef struct pool pool;
 
+/* Signals that end a program from outside. The pool's threads leave them, and SIGALRM, to the thread that knows what to do
+ * then. */
+#define POOL_SIGNALS SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU
+
 /* Threads of the machine, 1 .. TYN_MAX_WORKERS. */
 int32_t pool_default_workers(void);
 
