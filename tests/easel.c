@@ -151,7 +151,7 @@ double easel_dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static void cross3(const double a[3], const double b[3], double out[3])
+void easel_cross(const double a[3], const double b[3], double out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
@@ -165,9 +165,9 @@ easel_exact easel_exact_new(double v[3][3])
     for (int k = 0; k < 3; k++) {
         a[k] = v[1][k] - v[0][k];
         b[k] = v[2][k] - v[0][k];
-        cross3(v[k], v[(k + 1) % 3], t.edge[k]);
+        easel_cross(v[k], v[(k + 1) % 3], t.edge[k]);
     }
-    cross3(a, b, t.normal);
+    easel_cross(a, b, t.normal);
     t.distance = easel_dot(t.normal, v[0]);
     return t;
 }

@@ -51,6 +51,7 @@ easel_exact easel_exact_new(double v[3][3]);
 /* w where the ray meets the triangle; 0: it misses; -1: too near to an edge to tell, `margin` pixels of sizes `step`. */
 double easel_exact_hit(const easel_exact *t, const double r[3], const double step[2], double margin);
 double easel_dot(const double a[3], const double b[3]);
+void easel_cross(const double a[3], const double b[3], double out[3]);
 
 /* A parallel map over the texels' own coordinates: u = x / size, v = y / size, z = z. */
 tyn_shadow easel_plain_map(int32_t size);

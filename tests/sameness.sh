@@ -73,7 +73,7 @@ rooms() {
     ARMv7) echo $few,raster ;;
     MIPS-BE) echo $few,raster,ray,render ;;
     PowerPC64-BE) echo $few ;;
-    RISC-V-64) echo $few,raster_light,showcase ;;
+    RISC-V-64) echo $few,raster_light,raster_shadow,showcase ;;
     wasm32) echo golden,isa,lanes,query,raster,raster_isa,raster_map,ray,render,sample ;; # no files, no threads
     esac
 }

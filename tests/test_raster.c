@@ -1,5 +1,5 @@
 /* test_raster.c - level (a), geometry: what is covered, how deep it is, what clipping leaves, limits, order, errors.
- * Colour and light are in test_raster_light.c. */
+ * Colour and light are in test_raster_light.c and test_raster_shadow.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
