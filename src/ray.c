@@ -41,12 +41,16 @@ static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *n
         if (position < finder->blocks->low[w] || position >= finder->blocks->high[w])
             i = behind;
         for (;; i++) {
-            if (lit)
+            if (lit) {
+                const uint16_t *t = threshold + i; /* four at a time: most of what is looked at is lit */
+                for (; i + 3 < behind && position < t[0] && position < t[1] && position < t[2] && position < t[3]; i += 4)
+                    t += 4;
                 while (i < behind && position < threshold[i])
                     i++;
-            else
+            } else {
                 while (i < behind && position >= threshold[i])
                     i++;
+            }
             if (i == behind)
                 break;
             lit = !lit;
