@@ -11,9 +11,10 @@
  * tangent reaches. */
 #define FLAT (1u << 16)
 #define SPREAD (1u << 20)
+#define LEVEL (1u << 18)
 
 /* The pixels of a row share one if their depths are within a 64th of each other: the square of that. */
-#define EVEN (1.0f / 4096.0f)
+#define EVEN (1.0f / 1024.0f)
 
 /* ---- which frames ---- */
 
@@ -246,21 +247,18 @@ TYNI_INLINE void flatten(const tyni_quads *q, uint32_t fade, float away, tyni_ai
     }
 }
 
-/* The samples of a surface that one of both may have missed, both or one twice. 0: all pixels fit neither, or not all one. */
-TYNI_INLINE int fitting(const tyni_quads *q, uint32_t from, uint32_t to, uint32_t part, uint32_t *e0, uint32_t *e1)
+/* The samples that the middle of a quad fits, both or one twice: at an edge lines go on that others end at. 0: neither. */
+TYNI_INLINE int fitting(const tyni_quads *q, float middle, uint32_t part, uint32_t *e0, uint32_t *e1)
 {
-    const uint32_t low0 = tyni_quads_low(q, *e0), low1 = tyni_quads_low(q, *e1), end = 2 * TYNI_QUADS_WINDOW;
-    const int first = from - low0 < end, second = from - low1 < end;
-    if (first != (to - low0 < end) || second != (to - low1 < end))
-        return 0;
-    if (first && second)
-        return 1;
-    if (first && part <= 64 - TYNI_QUADS_ENOUGH)
+    const uint32_t bits = tyni_float_bits(middle);
+    const int first = bits - tyni_quads_low(q, *e0) < 2 * TYNI_QUADS_WINDOW;
+    const int second = bits - tyni_quads_low(q, *e1) < 2 * TYNI_QUADS_WINDOW;
+    if (first && !second && part <= 64 - TYNI_QUADS_ENOUGH)
         *e1 = *e0;
-    else if (second && part >= TYNI_QUADS_ENOUGH)
+    else if (second && !first && part >= TYNI_QUADS_ENOUGH)
         *e0 = *e1;
     else
-        return 0;
+        return first && second;
     return 1;
 }
 
@@ -276,9 +274,17 @@ TYNI_INLINE way shared(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, con
     *fade = fade_of_twice(q, twice);
     if (to - from >= SPREAD || *fade >= TYNI_QUADS_FADES) /* or one is below 0 */
         return WAY_NONE;
-    if (((from - low) | (to - low) | apart(e0, e1)) >= 2 * TYNI_QUADS_WINDOW && !fitting(q, from, to, part, &e0, &e1))
-        return WAY_NONE;
-    light_of(q, e0, e1, part, k, a->light);
+    if (((from - low) | (to - low) | apart(e0, e1)) < 2 * TYNI_QUADS_WINDOW ||
+        fitting(q, 0.5f * (near + far), part, &e0, &e1)) {
+        light_of(q, e0, e1, part, k, a->light);
+    } else {
+        float light[3]; /* of its own: else the air would lie in memory */
+        if (to - from >= LEVEL || !tyni_stray_about(q, (int32_t)n, 0.5f * (near + far), k, light))
+            return WAY_NONE;
+        TYNI_UNROLL
+        for (int32_t c = 0; c < 3; c++)
+            a->light[c] = light[c];
+    }
     a->from = tyni_bits_float(((uint32_t)q->base + *fade) << TYNI_QUADS_FADE_BITS);
     a->flat = to - from < FLAT;
     if (a->flat) {

@@ -149,8 +149,7 @@ TYNI_INLINE void look_at(search *s, uint32_t entry, uint32_t weight)
     }
 }
 
-/* A pixel that fits neither of its quad's samples. 0: nor any beside. */
-static TYNI_NOINLINE int look_about(const tyni_quads *q, int32_t n, float z, const tyni_knot *k, float light[3])
+int tyni_stray_about(const tyni_quads *q, int32_t n, float z, const tyni_knot *k, float light[3])
 {
     const int32_t pitch = (int32_t)q->pitch, place = q->entry[n], sample = place % pitch, bits = (int32_t)tyni_float_bits(z);
     const uint32_t *entry = q->entries + place, part = (uint32_t)q->part[n];
@@ -216,7 +215,7 @@ void tyni_stray_each(const tyni_quads *q, int32_t n, int32_t rows, const tyni_kn
             }
             if (w0 + w1 < TYNI_QUADS_ENOUGH) {
                 a->ready = 0;
-                if (!look_about(q, n, z, k, a->air.light)) {
+                if (!tyni_stray_about(q, n, z, k, a->air.light)) {
                     reject(q, row, depth);
                     continue;
                 }
