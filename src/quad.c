@@ -134,7 +134,7 @@ static void take_scratch(tyni_quads *q, const tyni_pass *p, const tyni_scratch *
 /* ---- where quads lie ---- */
 
 /* at: 64 times where it is between lines. */
-TYNI_INLINE void place_at(float at, float most, int32_t place, int32_t pitch, int32_t *entry, int32_t *part)
+TYNI_QUADS_INLINE void place_at(float at, float most, int32_t place, int32_t pitch, int32_t *entry, int32_t *part)
 {
     const int32_t k = (int32_t)tyni_minf(tyni_maxf(at, 0.0f), most);
     *part = k & 63;
@@ -195,7 +195,7 @@ static TYNI_NOINLINE void knots(const tyni_quads *q, int32_t pairs)
     }
 }
 
-TYNI_INLINE void knot_add(tyni_knot *k, const tyni_knot *by)
+TYNI_QUADS_INLINE void knot_add(tyni_knot *k, const tyni_knot *by)
 {
     k->length += by->length;
     TYNI_UNROLL
@@ -209,7 +209,7 @@ TYNI_INLINE void knot_add(tyni_knot *k, const tyni_knot *by)
 typedef enum way { WAY_FLAT, WAY_ROWS, WAY_PIXELS, WAY_NONE } way;
 
 /* As far as the farthest depth. */
-TYNI_INLINE void depths_of(const tyni_quads *q, ptrdiff_t n, float z[4])
+TYNI_QUADS_INLINE void depths_of(const tyni_quads *q, ptrdiff_t n, float z[4])
 {
     const float *upper = q->depth[0] + 2 * n, *lower = q->depth[1] + 2 * n;
     z[0] = tyni_minf(upper[0], q->far);
@@ -219,25 +219,26 @@ TYNI_INLINE void depths_of(const tyni_quads *q, ptrdiff_t n, float z[4])
 }
 
 /* Number of the nearest fade to half of so many metres: TYNI_QUADS_FADES or more if there is none. */
-TYNI_INLINE uint32_t fade_of_twice(const tyni_quads *q, float twice)
+TYNI_QUADS_INLINE uint32_t fade_of_twice(const tyni_quads *q, float twice)
 {
     return ((tyni_float_bits(twice) + (1u << (TYNI_QUADS_FADE_BITS - 1))) >> TYNI_QUADS_FADE_BITS) - q->twice;
 }
 
 /* Below 2 TYNI_QUADS_WINDOW: the second sample is about as far as the first. */
-TYNI_INLINE uint32_t apart(uint32_t e0, uint32_t e1)
+TYNI_QUADS_INLINE uint32_t apart(uint32_t e0, uint32_t e1)
 {
     return (e1 - (e0 & 0xfff00000u) + (TYNI_QUADS_WINDOW << 5)) >> 5;
 }
 
 /* The light of both samples. */
-TYNI_INLINE void light_of(const tyni_quads *q, uint32_t e0, uint32_t e1, uint32_t part, const tyni_knot *k, float light[3])
+TYNI_QUADS_INLINE void light_of(const tyni_quads *q, uint32_t e0, uint32_t e1, uint32_t part, const tyni_knot *k,
+                                float light[3])
 {
     const uint32_t r0 = tyni_quads_roots(e0), sum = (r0 << 6) + (tyni_quads_roots(e1) - r0) * part;
     tyni_quads_light(q, (float)(int32_t)(sum & 0xffffu), (float)(int32_t)(sum >> 16), k->glow, light);
 }
 
-TYNI_INLINE void flatten(const tyni_quads *q, uint32_t fade, float away, tyni_air *a)
+TYNI_QUADS_INLINE void flatten(const tyni_quads *q, uint32_t fade, float away, tyni_air *a)
 {
     const float *share = q->fade[fade];
     TYNI_UNROLL
@@ -248,7 +249,7 @@ TYNI_INLINE void flatten(const tyni_quads *q, uint32_t fade, float away, tyni_ai
 }
 
 /* The samples that the middle of a quad fits, both or one twice: at an edge lines go on that others end at. 0: neither. */
-TYNI_INLINE int fitting(const tyni_quads *q, float middle, uint32_t part, uint32_t *e0, uint32_t *e1)
+TYNI_QUADS_INLINE int fitting(const tyni_quads *q, float middle, uint32_t part, uint32_t *e0, uint32_t *e1)
 {
     const uint32_t bits = tyni_float_bits(middle);
     const int first = bits - tyni_quads_low(q, *e0) < 2 * TYNI_QUADS_WINDOW;
@@ -263,7 +264,8 @@ TYNI_INLINE int fitting(const tyni_quads *q, float middle, uint32_t part, uint32
 }
 
 /* What the pixels of a quad share: that takes their depths to be that of one surface, which the samples have too. */
-TYNI_INLINE way shared(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, const float z[4], uint32_t *fade, tyni_air *a)
+TYNI_QUADS_INLINE way shared(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, const float z[4], uint32_t *fade,
+                             tyni_air *a)
 {
     const uint32_t *entry = q->entries + q->entry[n], part = (uint32_t)q->part[n];
     uint32_t e0 = entry[0], e1 = entry[q->pitch];
@@ -300,7 +302,7 @@ TYNI_INLINE way shared(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, con
 }
 
 /* The same of the next quad, if it is as flat, at the very depth of the last, and has the same fade: as in the sky. */
-TYNI_INLINE int again(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, float depth, uint32_t fade, tyni_air *a)
+TYNI_QUADS_INLINE int again(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, float depth, uint32_t fade, tyni_air *a)
 {
     const float *upper = q->depth[0] + 2 * n, *lower = q->depth[1] + 2 * n, z = tyni_minf(depth, q->far);
     const uint32_t *entry = q->entries + q->entry[n], e0 = entry[0], e1 = entry[q->pitch], bits = tyni_float_bits(depth);
@@ -317,7 +319,7 @@ TYNI_INLINE int again(const tyni_quads *q, ptrdiff_t n, const tyni_knot *k, floa
 }
 
 /* share * colour + light */
-TYNI_INLINE void put_flat(const tyni_quads *q, const uint8_t *from, uint8_t *to, const tyni_air *a, uint32_t dither)
+TYNI_QUADS_INLINE void put_flat(const tyni_quads *q, const uint8_t *from, uint8_t *to, const tyni_air *a, uint32_t dither)
 {
     to[0] = (uint8_t)((tyni_quads_level(q, a->light[0] + a->share[0] * q->decode[from[0]]) + dither) >> 8);
     to[1] = (uint8_t)((tyni_quads_level(q, a->light[1] + a->share[1] * q->decode[from[1]]) + dither) >> 8);
@@ -337,7 +339,7 @@ static TYNI_NOINLINE void put_pixels(const tyni_quads *q, ptrdiff_t n, const flo
 
 /* Quads of a plain frame from n on, before `end`. Returns how many are done; 0: the first needs its pixels one by one. The knot
  * goes along. */
-TYNI_INLINE ptrdiff_t some(const tyni_quads *q, ptrdiff_t n, ptrdiff_t end, tyni_knot *k, const tyni_knot *step)
+TYNI_QUADS_INLINE ptrdiff_t some(const tyni_quads *q, ptrdiff_t n, ptrdiff_t end, tyni_knot *k, const tyni_knot *step)
 {
     const ptrdiff_t first = n;
     float z[4];

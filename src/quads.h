@@ -14,6 +14,13 @@
 
 #include "base.h"
 
+/* Part of its caller's loop, but where size counts. */
+#if defined(__OPTIMIZE_SIZE__)
+#define TYNI_QUADS_INLINE static inline
+#else
+#define TYNI_QUADS_INLINE TYNI_INLINE
+#endif
+
 /* Roots of linear values, 0 .. 1, are taken in so many steps: fine enough to tell 255 levels apart, 0.4 of one in the dark. */
 #define TYNI_QUADS_LEVELS 1023.0f /* the last of tyni_composite_curve */
 
@@ -85,7 +92,7 @@ static inline int32_t tyni_quads_colour(const tyni_quads *q, int32_t channel)
 /* ---- the air ---- */
 
 /* The nearest fade to s metres. */
-TYNI_INLINE void tyni_quads_fade(const tyni_quads *q, float s, tyni_air *a)
+TYNI_QUADS_INLINE void tyni_quads_fade(const tyni_quads *q, float s, tyni_air *a)
 {
     const uint32_t half = 1u << (TYNI_QUADS_FADE_BITS - 1);
     const int32_t i =
@@ -99,7 +106,7 @@ TYNI_INLINE void tyni_quads_fade(const tyni_quads *q, float s, tyni_air *a)
     }
 }
 
-TYNI_INLINE void tyni_quads_share(const tyni_air *a, float s, float share[3])
+TYNI_QUADS_INLINE void tyni_quads_share(const tyni_air *a, float s, float share[3])
 {
     const float away = s - a->from;
     TYNI_UNROLL
@@ -108,20 +115,20 @@ TYNI_INLINE void tyni_quads_share(const tyni_air *a, float s, float share[3])
 }
 
 /* Two 10-bit roots as the halves of a word, with room for a weight of 64 in all. */
-TYNI_INLINE uint32_t tyni_quads_roots(uint32_t entry)
+TYNI_QUADS_INLINE uint32_t tyni_quads_roots(uint32_t entry)
 {
     return (entry & 0x3ffu) | (entry & 0xffc00u) << 6;
 }
 
 /* The nearest bits of a depth, in metres, that a sample fits: fewer than 2 TYNI_QUADS_WINDOW farther are as good. */
-TYNI_INLINE uint32_t tyni_quads_low(const tyni_quads *q, uint32_t entry)
+TYNI_QUADS_INLINE uint32_t tyni_quads_low(const tyni_quads *q, uint32_t entry)
 {
     return tyni_float_bits(q->far * tyni_entry_depth(entry)) - TYNI_QUADS_WINDOW;
 }
 
 /* From weighed roots of visibility and what shines where all is lit. Between the least and the largest extinction a root goes
  * straight: visibility falls about exponentially with extinction. */
-TYNI_INLINE void tyni_quads_light(const tyni_quads *q, float low, float high, const float glow[3], float light[3])
+TYNI_QUADS_INLINE void tyni_quads_light(const tyni_quads *q, float low, float high, const float glow[3], float light[3])
 {
     const float more = high - low;
     TYNI_UNROLL
@@ -134,14 +141,14 @@ TYNI_INLINE void tyni_quads_light(const tyni_quads *q, float low, float high, co
 /* ---- pixels ---- */
 
 /* 256 times the level, 0 .. 255. x: not below 0. */
-TYNI_INLINE uint32_t tyni_quads_level(const tyni_quads *q, float x)
+TYNI_QUADS_INLINE uint32_t tyni_quads_level(const tyni_quads *q, float x)
 {
     return tyni_composite_curve[(ptrdiff_t)sqrtf(tyni_minf(x, q->most))];
 }
 
 /* Of a plain frame. */
-TYNI_INLINE void tyni_quads_put(const tyni_quads *q, const uint8_t *from, uint8_t *to, const float light[3],
-                                const float share[3], uint32_t dither)
+TYNI_QUADS_INLINE void tyni_quads_put(const tyni_quads *q, const uint8_t *from, uint8_t *to, const float light[3],
+                                      const float share[3], uint32_t dither)
 {
     const float x = q->decode[from[0]] - light[0], y = q->decode[from[1]] - light[1], z = q->decode[from[2]] - light[2];
     to[0] = (uint8_t)((tyni_quads_level(q, light[0] + share[0] * x) + dither) >> 8);

@@ -77,7 +77,7 @@ void tyni_stray_put(const tyni_quads *q, int32_t x, int32_t row, const tyni_air 
 /* ---- light from beside ---- */
 
 /* From a sum of roots by weights. */
-TYNI_INLINE void weighed(const tyni_quads *q, uint32_t sum, uint32_t weight, const float glow[3], float light[3])
+TYNI_QUADS_INLINE void weighed(const tyni_quads *q, uint32_t sum, uint32_t weight, const float glow[3], float light[3])
 {
     const float scale = 64.0f / (float)(int32_t)weight;
     tyni_quads_light(q, (float)(int32_t)(sum & 0xffffu) * scale, (float)(int32_t)(sum >> 16) * scale, glow, light);
@@ -123,7 +123,7 @@ static TYNI_NOINLINE int between(const tyni_quads *q, uint32_t before, uint32_t 
 }
 
 /* The first entry that is not nearer than what these are the bits of: the whole entry tells depths apart. */
-TYNI_INLINE uint32_t entry_from(const tyni_quads *q, int32_t bits)
+TYNI_QUADS_INLINE uint32_t entry_from(const tyni_quads *q, int32_t bits)
 {
     const float depth = tyni_bits_float((uint32_t)tyni_maxi(bits, 0)) * q->near;
     const int32_t steps = (int32_t)tyni_float_bits(depth) - (int32_t)(TYNI_ENTRY_FLOOR + 0x4000u) + 0x7fff;
@@ -137,7 +137,7 @@ typedef struct search {
     uint32_t sum, weight;
 } search;
 
-TYNI_INLINE void look_at(search *s, uint32_t entry, uint32_t weight)
+TYNI_QUADS_INLINE void look_at(search *s, uint32_t entry, uint32_t weight)
 {
     if (entry - s->first < s->span) {
         s->sum += tyni_quads_roots(entry) * weight;
