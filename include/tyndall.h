@@ -594,10 +594,10 @@ typedef struct tyn_stats {
     uint64_t row_ns;       /* slices: rows of thresholds, and their trees or sorted orders */
     uint64_t ray_ns;       /* slices: rays and refinement; grids: rays */
     uint64_t line_ns;      /* slices: interpolation along lines, storing them */
-    uint64_t unwarp_ns;    /* pixels, or with downscale points, from lines; phase functions */
+    uint64_t unwarp_ns;    /* pixels, or with downscale points, from lines */
     uint64_t correct_ns;   /* rays of rejected and corrected pixels; of all with march */
-    uint64_t upscale_ns;   /* with downscale: pixels from the coarse picture; phase functions */
-    uint64_t composite_ns; /* colour, transmittance, encoding */
+    uint64_t upscale_ns;   /* with downscale: pixels from the coarse picture */
+    uint64_t composite_ns; /* phase functions, transmittance, colour, encoding */
 } tyn_stats;
 
 typedef enum tyn_debug {

@@ -38,13 +38,17 @@
 #define TYNI_PREFETCH(address) ((void)(address))
 #endif
 
-/* Before a loop of few and known rounds: all of them side by side. Vectors in an array would else go through memory. */
+/* Before a loop of few and known rounds, at most 4, or at most 8: all of them side by side. Vectors in an array would else go
+ * through memory. */
 #if defined(__clang__)
 #define TYNI_UNROLL _Pragma("clang loop unroll(full)")
+#define TYNI_UNROLL_MORE TYNI_UNROLL
 #elif defined(__GNUC__) && !defined(__OPTIMIZE_SIZE__)
 #define TYNI_UNROLL _Pragma("GCC unroll 4")
+#define TYNI_UNROLL_MORE _Pragma("GCC unroll 8")
 #else
 #define TYNI_UNROLL
+#define TYNI_UNROLL_MORE
 #endif
 
 /* Of rare work whose stack the caller should not carry. */

@@ -132,15 +132,12 @@ static const uint8_t bayer[64] = {
     3, 35, 11, 43, 1, 33, 9,  41, 51, 19, 59, 27, 49, 17, 57, 25, 15, 47, 7, 39, 13, 45, 5, 37, 63, 31, 55, 23, 61, 29, 53, 21,
 };
 
-/* 1.055 * 2^(5 / 12 e), e = -9 .. 0: what the exponent of a float adds to its sRGB encoding, 1.055 x^(1 / 2.4) - 0.055. By the
- * low four bits of the exponent as floats have it, which is 127 for e = 0. */
-static const float octave[16] = {
+const float tyni_composite_octave[16] = {
     0.0f,       0.0f,         0.0f,         0.0f,        0.0f,         0.0f,         0.0784133449f, 0.104669258f,
     0.1397167f, 0.186499417f, 0.248946846f, 0.33230418f, 0.443572849f, 0.592098713f, 0.790356994f,  1.05499995f,
 };
 
-/* A row of the matrix, twice and a half: 16 pixels can be read from any of its first eight. */
-static void dither_row(const tyn_display *display, int32_t y, float row[24])
+void tyni_composite_offsets(const tyn_display *display, int32_t y, float row[24])
 {
     for (int32_t i = 0; i < 8; i++)
         row[i] = row[i + 8] = row[i + 16] = display->dither ? ((float)bayer[(y & 7) * 8 + i] + 0.5f) * (1.0f / 64.0f) : 0.5f;
@@ -172,7 +169,7 @@ void tyni_composite_write(int32_t isa, const tyn_image *image, const tyn_display
 {
     uint8_t *p = (uint8_t *)tyni_image_row(image, y) + (ptrdiff_t)x * tyn_format_bytes(image->format);
     float row[24];
-    dither_row(display, y, row);
+    tyni_composite_offsets(display, y, row);
     TYNI_LANES_CALL(isa, composite_write, (image->format, display, p, x, count, rgb, row));
 }
 
@@ -184,6 +181,6 @@ void tyni_composite_blend(int32_t isa, const tyn_image *image, const tyn_display
     float row[24];
     if (colour->pixels)
         from = (const uint8_t *)tyni_image_row(colour, y) + (ptrdiff_t)x * tyn_format_bytes(colour->format);
-    dither_row(display, y, row);
+    tyni_composite_offsets(display, y, row);
     TYNI_LANES_CALL(isa, composite_blend, (image->format, display, p, colour->format, from, x, count, share, light, row));
 }

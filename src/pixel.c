@@ -12,6 +12,13 @@
 #include "sample.h"
 #include "walk.h"
 
+/* Whether an ISA has lanes side by side. */
+#if defined(TYNI_LANES_X86) || defined(TYNI_LANES_NEON) || defined(TYNI_LANES_WASM)
+#define WIDE(isa) ((isa) != TYN_ISA_SCALAR)
+#else
+#define WIDE(isa) 0
+#endif
+
 /* Samples of a band's pixels. */
 #define TILE_SAMPLES (TYNI_PIXEL_BAND + 1)
 
@@ -72,11 +79,29 @@ static int32_t shift_of(const tyni_slices *slices)
     return shift;
 }
 
+/* The usual picture: one sun over all of the screen, out of four bytes a pixel into four. Channels are in the order of the
+ * medium's least extinction, its largest and the one between. */
+typedef struct picture {
+    tyni_medium medium;
+    float inverse[3], colour[3];            /* 1 / extinction, 0 for none; of the sun */
+    int32_t from_byte[3], shift[3], opaque; /* in pixels of four bytes; in words */
+    float exposure;
+    tyn_tone tone;
+    /* of a run */
+    const uint8_t *from;
+    uint8_t *target;
+    float offset[24]; /* tyni_composite_offsets */
+} picture;
+
+typedef char picture_fits[sizeof(picture) <= TYN_BUNDLE_BYTES ? 1 : -1]; /* it has that part of the worker's scratch */
+
 #define TYNI_KERNEL "pixel_kernel.h"
 #include "lanes/each.h"
 #define TYNI_KERNEL "beside_kernel.h"
 #include "lanes/each.h"
 #define TYNI_KERNEL "shade_kernel.h"
+#include "lanes/each.h"
+#define TYNI_KERNEL "picture_kernel.h"
 #include "lanes/each.h"
 
 /* What follows from the pixels' depths. A function of its own, as others below, for the stack that later stages need. */
@@ -214,9 +239,9 @@ static TYNI_NOINLINE void clip_rays(const tyni_pass *p, const run *r)
     }
 }
 
+/* Visibility of the run's pixels. */
 static void unwarp(const tyni_pass *p, run *r, tile *t)
 {
-    const int32_t isa = p->context->config.isa;
     r->from = r->share[1];
     r->to = r->share[2];
     if (tyni_view_bounded(p->lamp)) {
@@ -232,6 +257,12 @@ static void unwarp(const tyni_pass *p, run *r, tile *t)
         unwarp_shear(p, r, t);
     else
         unwarp_each(p, r);
+}
+
+/* From visibility to light: its phase functions, and what of it arrives. */
+static void shade(const tyni_pass *p, run *r)
+{
+    const int32_t isa = p->context->config.isa;
     if (tyni_view_kind(p->lamp) != TYN_LIGHT_DIRECTIONAL || (p->method == TYN_METHOD_MARCH && !tyni_pass_gridded(p)))
         r->shared = 0;
     if (p->method == TYN_METHOD_MARCH && !tyni_pass_gridded(p))
@@ -242,8 +273,8 @@ static void unwarp(const tyni_pass *p, run *r, tile *t)
         TYNI_LANES_CALL(isa, pixel_shade_local, (p, r));
 }
 
-/* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. Returns how many. */
-static int32_t correct(const tyni_pass *p, const run *r)
+/* The rays of pixels that nothing fits, and of all with TYN_METHOD_MARCH. */
+static void correct(const tyni_pass *p, const run *r)
 {
     int32_t steps = tyni_ray_way(p->context->config.rays, TYN_RAYS_STEPS) ? p->context->config.steps : 0, count = 0;
     /* where a line's samples are some pixels apart, so may the texels be */
@@ -267,7 +298,6 @@ static int32_t correct(const tyni_pass *p, const run *r)
         r->stats->rays += count;
     else
         r->stats->rejected += count;
-    return count;
 }
 
 /* L = transmittance * colour + L_scat, into the target's format. */
@@ -305,38 +335,101 @@ static void draw_debug(const tyni_pass *p, const run *r, float *const colour[3])
     tyni_composite_write(isa, &p->frame->target, &plain, r->x, r->y, r->count, colour);
 }
 
-/* `sum`: of the lights before, three planes of the run's pixels. */
-static void draw_run(const tyni_pass *p, run *r, tile *t, float *sum)
+static int four_bytes(tyn_format format)
 {
-    /* where the lines hold marks there is no light to see */
-    int dark = p->method == TYN_METHOD_NONE || tyni_debug_marks(p->frame->debug);
+    return format == TYN_RGBA8_SRGB || format == TYN_BGRA8_SRGB;
+}
+
+/* Whether this light's pictures are the usual ones, and if so what is the same in all runs. */
+static int usual(const tyni_pass *p, picture *q)
+{
+    const tyn_frame *f = p->frame;
+    const tyni_medium *m = &p->medium;
+    const int32_t order[3] = {m->low, m->high, m->middle};
+    if (!WIDE(p->context->config.isa) || !p->first || !p->last || p->count == 3 || p->method == TYN_METHOD_NONE ||
+        (p->method == TYN_METHOD_MARCH && !tyni_pass_gridded(p)) || tyni_prefilter_kept(p->method) ||
+        tyni_view_kind(p->lamp) != TYN_LIGHT_DIRECTIONAL || tyni_view_bounded(p->lamp))
+        return 0;
+    if (f->debug || f->scatter.pixels || f->transmittance.pixels || !f->colour.pixels || !f->target.pixels ||
+        !four_bytes(f->colour.format) || !four_bytes(f->target.format))
+        return 0;
+    q->medium = *m;
+    for (int32_t n = 0; n < 3; n++) {
+        const int32_t c = order[n];
+        if (p->fog[c] != m->sigma[c])
+            return 0;
+        q->medium.sigma[n] = m->sigma[c];
+        q->medium.isotropic[n] = m->isotropic[c];
+        q->medium.rayleigh[n] = m->rayleigh[c];
+        for (int32_t i = 0; i < m->hg_count; i++)
+            q->medium.hg[i].scale[n] = m->hg[i].scale[c];
+        q->inverse[n] = m->sigma[c] > TYNI_SIGMA_LEAST ? 1.0f / m->sigma[c] : 0.0f;
+        q->colour[n] = p->lamp->colour[c];
+        q->from_byte[n] = f->colour.format == TYN_BGRA8_SRGB ? 2 - c : c;
+        q->shift[n] = 8 * (f->target.format == TYN_BGRA8_SRGB ? 2 - c : c);
+    }
+    q->opaque = (int32_t)0xff000000u;
+    q->exposure = f->display.exposure > 0.0f ? f->display.exposure : 1.0f;
+    q->tone = f->display.tone;
+    return 1;
+}
+
+static void paint(const tyni_pass *p, const run *r, picture *q)
+{
+    q->from = (const uint8_t *)tyni_image_row(&p->frame->colour, r->y) + (ptrdiff_t)r->x * 4;
+    q->target = (uint8_t *)tyni_image_row(&p->frame->target, r->y) + (ptrdiff_t)r->x * 4;
+    tyni_composite_offsets(&p->frame->display, r->y, q->offset);
+    TYNI_LANES_CALL(p->context->config.isa, pixel_picture, (r, q));
+}
+
+/* From visibility to the end; `sum`: of the lights before, three planes of the run's pixels. Returns the time that rays of
+ * their own took. */
+static uint64_t light_run(const tyni_pass *p, run *r, int dark, float *sum)
+{
     const size_t bytes = sizeof **r->light * (size_t)r->count;
-    uint64_t time[4];
-    time[0] = r->now;
-    r->shared = 0;
+    uint64_t start, took = 0;
     for (int32_t c = 0; c < 3; c++) {
         if (p->first)
             memset(r->light[c], 0, bytes);
         else
             memcpy(r->light[c], sum + c * r->count, bytes);
     }
-    memset(r->rejected, 0, sizeof *r->rejected * (size_t)tyni_sample_words(r->count));
-    see(p, r);
     if (!dark)
-        unwarp(p, r, t);
-    time[1] = tyni_pass_now(p);
-    /* clocks take as long as some pixels */
-    time[2] = !dark && correct(p, r) ? tyni_pass_now(p) : time[1];
+        shade(p, r);
+    if (!dark && tyni_sample_next(r->rejected, 0, r->count - 1) < r->count) { /* clocks take as long as some pixels */
+        start = tyni_pass_now(p);
+        correct(p, r);
+        took = tyni_pass_now(p) - start;
+    }
     for (int32_t c = 0; c < 3 && !p->last; c++)
         memcpy(sum + c * r->count, r->light[c], bytes);
     if (p->last)
         finish(p, r);
     if (TYNI_HAS(TYN_PART_DEBUG) && p->frame->debug && p->frame->target.pixels)
         draw_debug(p, r, r->value);
-    r->now = time[3] = tyni_pass_now(p);
-    *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += time[1] - time[0];
-    r->stats->correct_ns += time[2] - time[1];
-    r->stats->composite_ns += time[3] - time[2];
+    return took;
+}
+
+/* q: NULL where the picture is not the usual one. */
+static void draw_run(const tyni_pass *p, run *r, tile *t, picture *q, float *sum)
+{
+    /* where the lines hold marks there is no light to see */
+    int dark = p->method == TYN_METHOD_NONE || tyni_debug_marks(p->frame->debug);
+    uint64_t before = r->now, middle, took = 0;
+    r->shared = 0;
+    memset(r->rejected, 0, sizeof *r->rejected * (size_t)tyni_sample_words(r->count));
+    see(p, r);
+    if (!dark)
+        unwarp(p, r, t);
+    middle = tyni_pass_now(p);
+    if (q && tyni_sample_next(r->rejected, 0, r->count - 1) >= r->count)
+        paint(p, r, q);
+    else
+        took = light_run(p, r, dark, sum);
+    r->now = tyni_pass_now(p);
+    *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += middle - before;
+    r->stats->correct_ns += took;
+    r->stats->composite_ns += r->now - middle - took;
 }
 
 void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
@@ -346,9 +439,11 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
     tyni_scratch s;
     tile t;
     run r;
+    picture *q;
     tyni_pass_scratch(p->context, worker, &s);
     memset(&r, 0, sizeof r);
     memset(&t, 0, sizeof t);
+    q = usual(p, (picture *)(void *)s.bundle) ? (picture *)(void *)s.bundle : NULL;
     /* where a line's values were: three arrays, three samples in each */
     t.room = p->context->points / 3 - 16;
     for (int32_t j = 0; j < TILE_SAMPLES; j++)
@@ -374,7 +469,7 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
         for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++) {
             float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r.y * p->view.width + r.x) * 3 : NULL;
             r.depth = tyni_door_row(&p->depth, r.x, r.y, r.count, s.depth);
-            draw_run(p, &r, &t, sum);
+            draw_run(p, &r, &t, q, sum);
         }
     }
 }

@@ -10,9 +10,12 @@ TYNI_V_INLINE v_float TYNI_V(test_wave)(v_float x, int second)
 
 TYNI_V_INLINE v_float TYNI_V(test_fade)(v_float x, int lost)
 {
-    v_float out[2];
+    v_float out[2], many[6], left[6], gone[6];
+    for (int32_t n = 0; n < 6; n++)
+        many[n] = n == 4 ? x : v_set(0.5f * (float)n);
+    v_fades(many, 6, left, gone);
     v_fade(x, &out[0], &out[1]);
-    return out[lost];
+    return v_select(v_eq(out[lost], lost ? gone[4] : left[4]), out[lost], v_set(-1.0f)); /* both are the same */
 }
 
 /* Results that hold numbers: any NaN is as good as any other. */

@@ -15,9 +15,18 @@ typedef struct picture {
     float scatter[3 * PIXELS], transmittance[3 * PIXELS], target[3 * PIXELS];
 } picture;
 
+/* With the light and what is left of the surfaces in images of their own; the picture must be the one without those. */
 static void draw(rig *r, tyn_config *config, int isa, int n, picture *out)
 {
+    static float alone[3 * PIXELS];
+    static uint8_t colour[4 * PIXELS];
     tyn_frame frame = rig_frame(r);
+    for (int i = 0; i < 4 * PIXELS; i++)
+        colour[i] = (uint8_t)(i * 37 + i / 256);
+    if (n % 3 < 2) {
+        frame.colour.pixels = colour;
+        frame.colour.format = n % 3 ? TYN_RGBA8_SRGB : TYN_BGRA8_SRGB;
+    }
     memset(out, 0x77, sizeof *out);
     config->isa = isa;
     frame.scatter.pixels = out->scatter;
@@ -30,6 +39,11 @@ static void draw(rig *r, tyn_config *config, int isa, int n, picture *out)
     frame.fog_scale = n % 5 == 4 ? 0.5f : 0;
     frame.max_distance = n % 5 == 3 ? 9.0f : 0;
     CHECK(rig_render(r, config, &frame) == TYN_OK);
+    memset(alone, 0x77, sizeof alone);
+    frame.scatter.pixels = frame.transmittance.pixels = NULL;
+    frame.target.pixels = alone;
+    CHECK(rig_render(r, config, &frame) == TYN_OK);
+    CHECK(memcmp(alone, out->target, sizeof alone) == 0);
 }
 
 static void test_one(int32_t isa)

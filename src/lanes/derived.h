@@ -193,6 +193,33 @@ TYNI_V_INLINE v_float v_fog(v_float x)
     return v_select(small, p, (1.0f - v_exp(-x)) / x);
 }
 
+/* Of n at once, 1 .. 6, term by term: each is one long chain, and one after the other they would be waited for. */
+TYNI_V_INLINE void v_fades(const v_float *x, int32_t n, v_float *left, v_float *lost)
+{
+    static const float term[4] = {0.00966636837f, 0.0555038117f, 0.240223497f, 0.693147182f};
+    v_float r[6], scale[6], p[6];
+    TYNI_UNROLL_MORE
+    for (int32_t k = 0; k < n; k++) {
+        const v_float t = v_max(x[k] * -1.44269504f, v_set(-126.0f));
+        const v_int i = v_trunc(t - 0.5f);
+        r[k] = t - v_to_float(i);
+        scale[k] = v_from_bits(v_shl(v_iadd(i, v_iset(127)), 23));
+        p[k] = v_set(0.00133813021f);
+    }
+    TYNI_UNROLL
+    for (int32_t j = 0; j < 4; j++) {
+        TYNI_UNROLL_MORE
+        for (int32_t k = 0; k < n; k++)
+            p[k] = p[k] * r[k] + term[j];
+    }
+    TYNI_UNROLL_MORE
+    for (int32_t k = 0; k < n; k++) {
+        p[k] = p[k] * r[k] * scale[k];
+        left[k] = p[k] + scale[k];
+        lost[k] = (1.0f - scale[k]) - p[k];
+    }
+}
+
 TYNI_V_INLINE void v_fade(v_float x, v_float *left, v_float *lost)
 {
     const v_float t = v_max(x * -1.44269504f, v_set(-126.0f));

@@ -1,0 +1,82 @@
+/* picture_kernel.h - a template: from visibility to the picture at once, for pixel.c. Planes have room for whole vectors. */
+
+/* A channel of a vector is a chain of a hundred operations that wait for one another, and what a core looks ahead is hardly
+ * longer: two vectors go together, and their six chains step by step. */
+#define CHAINS 6
+
+/* Exposed colours to words of the target. x: of each vector's first pixel. */
+TYNI_V_INLINE void TYNI_V(picture_encode)(const picture *q, const int32_t x[2], v_float rgb[CHAINS], v_int out[2])
+{
+    const int32_t film = q->tone == TYN_TONE_FILM;
+    const v_float most = v_set(film ? 1e30f : 1.0f);
+    TYNI_UNROLL_MORE
+    for (int32_t n = 0; n < CHAINS; n++)
+        rgb[n] = v_min(v_max(rgb[n], v_set(0.0f)), most);
+    if (film) {
+        TYNI_UNROLL_MORE
+        for (int32_t n = 0; n < CHAINS; n++)
+            rgb[n] = 1.0f - v_exp(-rgb[n]);
+    }
+    TYNI_V(format_encode)(rgb, CHAINS);
+    TYNI_UNROLL
+    for (int32_t k = 0; k < 2; k++) {
+        const v_float offset = v_load(q->offset + (x[k] & 7));
+        out[k] = v_iset(q->opaque);
+        TYNI_UNROLL
+        for (int32_t c = 0; c < 3; c++)
+            out[k] = v_ior(out[k], v_shl(TYNI_V(format_level)(rgb[3 * k + c], 255.0f, offset), q->shift[c]));
+    }
+}
+
+/* Light and what is left of the surfaces, added. The bits are those of pixel_shade and composite_blend one after the other;
+ * what they hand on by planes stays in registers here. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, const picture *q)
+{
+    const tyni_medium *m = &q->medium;
+    for (int32_t i = 0; i < r->count && v_n > 1; i += 2 * v_n) { /* one lane has too few registers to gain */
+        uint8_t part[2][4 * v_n];
+        v_float to[2], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
+        v_int out[2];
+        int32_t at[2], x[2];
+        at[0] = i;
+        at[1] = i + v_n < r->count ? i + v_n : i; /* where there is no second vector it is the first again */
+        TYNI_UNROLL
+        for (int32_t k = 0; k < 2; k++) {
+            x[k] = r->x + at[k];
+            to[k] = v_load(r->to + at[k]);
+            rgb[3 * k] = v_load(r->value[0] + at[k]);
+            rgb[3 * k + 1] = v_load(r->value[1] + at[k]);
+            rgb[3 * k + 2] = TYNI_V(pixel_between)(rgb[3 * k], rgb[3 * k + 1], m->blend);
+            TYNI_V(medium_mix)(m, v_load(r->cosine + at[k]), mix + 3 * k);
+        }
+        TYNI_UNROLL_MORE
+        for (int32_t n = 0; n < CHAINS; n++)
+            left[n] = m->sigma[n % 3] * to[n / 3];
+        v_fades(left, CHAINS, left, lost);
+        TYNI_UNROLL_MORE
+        for (int32_t n = 0; n < CHAINS; n++) {
+            v_float norm = to[n / 3];
+            if (q->inverse[n % 3] > 0.0f)
+                norm = lost[n] * q->inverse[n % 3];
+            norm = rgb[n] * norm * (mix[n] * q->colour[n % 3]);
+            rgb[n] = v_select(v_gt(to[n / 3], v_set(0.0f)), norm, v_set(0.0f));
+        }
+        TYNI_UNROLL
+        for (int32_t k = 0; k < 2; k++) {
+            const uint8_t *from = q->from + 4 * (ptrdiff_t)at[k];
+            if (r->count - at[k] < v_n)
+                from = memcpy(memset(part[k], 0, sizeof part[k]), from, 4 * (size_t)(r->count - at[k]));
+            TYNI_UNROLL
+            for (int32_t c = 0; c < 3; c++) {
+                const v_float surface = v_gather_bytes(tyni_composite_srgb, from, q->from_byte[c]);
+                rgb[3 * k + c] = (left[3 * k + c] * surface + rgb[3 * k + c]) * q->exposure;
+            }
+        }
+        TYNI_V(picture_encode)(q, x, rgb, out);
+        TYNI_UNROLL
+        for (int32_t k = 0; k < 2; k++)
+            v_istore_n(q->target + 4 * (ptrdiff_t)at[k], out[k], r->count - at[k]);
+    }
+}
+
+#undef CHAINS
