@@ -182,12 +182,20 @@ static void unwarp_sector(const tyni_pass *p, const run *r, const tyni_sector *s
     const int32_t isa = p->context->config.isa;
     const float *k = r->value[0];
     const tile *ready = NULL;
+    /* samples on each column or row of pixels, and one threshold for all */
+    const int plain = WIDE(isa) && p->slices.stride == 1 && tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL;
     if (s->count < 2)
         return; /* no slices at all */
     TYNI_LANES_CALL(isa, pixel_places, (p, r, s, first, end));
     if (s->along_y && isa != TYN_ISA_SCALAR && cover(p, s, k[first], k[end - 1], r->y, t))
         ready = t;
-    TYNI_LANES_CALL(isa, pixel_unwarp, (p, r, s, ready, first, end));
+    for (int32_t i = first, next; i < end; i = next) {
+        if (plain)
+            i = TYNI_LANES_CALL(isa, pixel_unwarp_pairs, (p, r, s, ready, i, end));
+        next = plain ? tyni_mini(i + 64, end) : end;
+        if (i < end)
+            TYNI_LANES_CALL(isa, pixel_unwarp, (p, r, s, ready, i, next));
+    }
     /* In the light of an unbounded sun: a lamp's varies too fast, and ends at its cone. Leaves have most such pixels: of 9951
      * with rays of their own in a picture of 1920x1080, 832 are left, at a loss of 0.1 dB to the march; with samples two pixels
      * apart 5027 become 2288 at 960x540, for 0.2 dB. */

@@ -270,3 +270,152 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p,
         }
     }
 }
+
+/* Two vectors of pixels from i on whose samples lie on their own column or row, in the light of a sun: the usual ones. Each is
+ * a chain of operations that wait for one another, and what a core looks ahead is hardly longer; so they go step by step. */
+typedef struct TYNI_V(pixel_pair) {
+    v_float at[2], f[2], scale[2][2][2]; /* of a vector, its line, and low or high */
+    v_int place[2], entry[2][2];         /* of a vector and its line */
+    int32_t low[2], span[2];
+} TYNI_V(pixel_pair);
+
+/* pixel_between_lines of both; 0: for one of them lines are too many. */
+TYNI_V_INLINE int TYNI_V(pixel_pair_lines)(const float *const scales[2], const float *k, int32_t first, int32_t last,
+                                           TYNI_V(pixel_pair) * q)
+{
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 2; n++) {
+        const int32_t a = tyni_mini((int32_t)k[n * v_n], last), b = tyni_mini((int32_t)k[n * v_n + v_n - 1], last);
+        const v_float at = v_load(k + n * v_n);
+        const v_int line = v_imin(v_trunc(at), v_iset(last));
+        q->f[n] = at - v_to_float(line);
+        q->low[n] = tyni_mini(a, b);
+        q->span[n] = tyni_maxi(a, b) - q->low[n];
+        q->place[n] = v_isub(line, v_iset(q->low[n]));
+        q->low[n] += first;
+    }
+    if (tyni_maxi(q->span[0], q->span[1]) >= v_n)
+        return 0;
+    TYNI_UNROLL_MORE
+    for (int32_t n = 0; n < 8; n++)
+        q->scale[n >> 2][n >> 1 & 1][n & 1] = v_pick(scales[n & 1] + q->low[n >> 2] + (n >> 1 & 1), q->place[n >> 2]);
+    return 1;
+}
+
+/* pixel_along of both. */
+TYNI_V_INLINE void TYNI_V(pixel_pair_along)(const tyni_field *f, int32_t base, TYNI_V(pixel_pair) * q)
+{
+    const int32_t span = tyni_maxi(q->span[0], q->span[1]);
+    const uint32_t *row[2];
+    v_int one[2];
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 2; n++) {
+        row[n] = f->entries + (ptrdiff_t)q->low[n] * f->pitch + base + n * v_n;
+        one[n] = q->entry[n][0] = q->entry[n][1] = v_iload(row[n]);
+    }
+    for (int32_t k = 0; k <= span; k += 4) {
+        TYNI_UNROLL
+        for (int32_t j = 0; j < 4; j++) {
+            TYNI_UNROLL
+            for (int32_t n = 0; n < 2; n++) {
+                const v_mask here = v_ieq(q->place[n], v_iset(k + j));
+                row[n] += k + j <= q->span[n] ? f->pitch : 0;
+                q->entry[n][0] = v_iselect(here, one[n], q->entry[n][0]);
+                one[n] = v_iload(row[n]);
+                q->entry[n][1] = v_iselect(here, one[n], q->entry[n][1]);
+            }
+        }
+    }
+}
+
+/* pixel_taps of both, and what they add up to. */
+TYNI_V_INLINE void TYNI_V(pixel_pair_taps)(const TYNI_V(pixel_pair) * q, float threshold, TYNI_V(pixel_sum) s[2])
+{
+    const v_int ten = v_iset(1023);
+    v_float off[4], limit[4], weight[4];
+    v_mask near = v_first(v_n);
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 4; n++) {
+        const v_int code = v_shr(q->entry[n >> 1][n & 1], 20);
+        const v_float other = v_from_bits(v_iadd(v_shl(code, 15), v_iset((int32_t)TYNI_ENTRY_FLOOR - 0x4000)));
+        off[n] = v_abs(q->at[n >> 1] - other);
+        limit[n] = threshold * v_min(q->at[n >> 1], other);
+        weight[n] = q->f[n >> 1];
+        if (!(n & 1))
+            weight[n] = 1.0f - weight[n];
+        weight[n] = v_select(v_ieq(code, v_iset(0)), v_set(0.0f), weight[n]);
+        near = v_mand(near, v_le(off[n], limit[n]));
+    }
+    if (!v_all(near)) {
+        TYNI_UNROLL
+        for (int32_t n = 0; n < 4; n++) {
+            const v_float ratio = limit[n] / v_max(off[n], limit[n]), square = ratio * ratio;
+            weight[n] = weight[n] * (square * square);
+        }
+    }
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 2; n++) {
+        v_float low[2], high[2];
+        TYNI_UNROLL
+        for (int32_t side = 0; side < 2; side++) {
+            const v_int entry = q->entry[n][side];
+            low[side] = v_to_float(v_iand(entry, ten));
+            high[side] = v_to_float(v_iand(v_shr(entry, 10), ten));
+            low[side] = weight[2 * n + side] * (low[side] * low[side] * q->scale[n][side][0]);
+            high[side] = weight[2 * n + side] * (high[side] * high[side] * q->scale[n][side][1]);
+        }
+        s[n].weight = weight[2 * n] + weight[2 * n + 1];
+        s[n].low = low[0] + low[1];
+        s[n].high = high[0] + high[1];
+    }
+}
+
+/* pixel_unwarp of two vectors after the other, as long as there are two whole ones and they are of that kind. Returns where it
+ * stopped. */
+static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni_pass *p, const run *r,
+                                                                      const tyni_sector *sector, const tile *t, int32_t first,
+                                                                      int32_t end)
+{
+    const tyni_field *field = &p->lines;
+    const float *const scales[2] = {field->scales[0], field->scales[1]};
+    const uint32_t *row = t ? t->row[r->y - t->sample] - t->low : NULL;
+    int32_t i = first;
+    for (; v_n > 1 && (row || !sector->along_y) && end - i >= 2 * v_n; i += 2 * v_n) {
+        TYNI_V(pixel_pair) q;
+        TYNI_V(pixel_sum) s[2];
+        v_mask wanted[2];
+        if (!TYNI_V(pixel_pair_lines)(scales, r->value[0] + i, sector->start, sector->count - 2, &q))
+            break;
+        TYNI_UNROLL
+        for (int32_t n = 0; n < 2; n++) {
+            const v_float to = v_load(r->to + i + n * v_n);
+            wanted[n] = v_gt(to, v_set(0.0f));
+            q.at[n] = v_max(to * v_load(r->nearness + i + n * v_n), v_set(TYNI_ENTRY_NEAREST));
+        }
+        if (row) {
+            const int32_t low = tyni_mini(q.low[0], q.low[1]), high = tyni_maxi(q.low[0] + q.span[0], q.low[1] + q.span[1]) + 1;
+            if (low < t->low || high >= t->low + t->count)
+                break;
+            TYNI_UNROLL
+            for (int32_t n = 0; n < 4; n++)
+                q.entry[n >> 1][n & 1] = v_ipick(row + q.low[n >> 1] + (n & 1), q.place[n >> 1]);
+        } else {
+            if (r->x + i + 2 * v_n > field->pitch)
+                break;
+            TYNI_V(pixel_pair_along)(field, r->x + i, &q);
+        }
+        TYNI_V(pixel_pair_taps)(&q, field->threshold, s);
+        TYNI_UNROLL
+        for (int32_t n = 0; n < 2; n++) {
+            const v_mask fits = v_mand(wanted[n], v_gt(s[n].weight, v_set(TYNI_GATHER_ENOUGH)));
+            const v_float scale = 1.0f / (s[n].weight * (1023.0f * 1023.0f));
+            v_store(r->value[0] + i + n * v_n, v_select(fits, s[n].low * scale, v_set(0.0f)));
+            v_store(r->value[1] + i + n * v_n, v_select(fits, s[n].high * scale, v_set(0.0f)));
+            for (uint32_t bits = v_word(v_mandnot(wanted[n], fits)); bits; bits &= bits - 1) {
+                const int32_t j = i + n * v_n + tyni_ctz32(bits);
+                r->rejected[j >> 5] |= 1u << (j & 31);
+            }
+        }
+    }
+    return i;
+}
