@@ -37,7 +37,8 @@ typedef struct run {
     uint32_t *rejected; /* bits */
     void *mill;
     tyn_stats *stats;
-    uint64_t now; /* when the run before this one was done */
+    uint64_t now;            /* the clock, when the last run in rows below one another was done */
+    uint64_t walked, row[2]; /* what rays of their own took in these rows; up to the light and from there on in the last one */
 } run;
 
 /* Visibility from lines or from the grid; 0: nothing fits. `at`: depth relative to far. A function of its own: its copies take
@@ -390,24 +391,29 @@ static void paint(const tyni_pass *p, const run *r, picture *q)
     TYNI_LANES_CALL(p->context->config.isa, pixel_picture, (r, q));
 }
 
-/* From visibility to the end; `sum`: of the lights before, three planes of the run's pixels. Returns the time that rays of
- * their own took. */
-static uint64_t light_run(const tyni_pass *p, run *r, int dark, float *sum)
+/* Whether any pixel wants a ray of its own. */
+static int rejects(const run *r)
+{
+    return tyni_sample_next(r->rejected, 0, r->count - 1) < r->count;
+}
+
+/* From visibility to the end; `sum`: of the lights before, three planes of the run's pixels. */
+static void light_run(const tyni_pass *p, run *r, int dark, float *sum)
 {
     const size_t bytes = sizeof **r->light * (size_t)r->count;
-    uint64_t start, took = 0;
     for (int32_t c = 0; c < 3; c++) {
         if (p->first)
             memset(r->light[c], 0, bytes);
         else
             memcpy(r->light[c], sum + c * r->count, bytes);
     }
-    if (!dark)
+    if (!dark) {
         shade(p, r);
-    if (!dark && tyni_sample_next(r->rejected, 0, r->count - 1) < r->count) { /* clocks take as long as some pixels */
-        start = tyni_pass_now(p);
-        correct(p, r);
-        took = tyni_pass_now(p) - start;
+        if (rejects(r)) {
+            const uint64_t start = tyni_pass_now(p);
+            correct(p, r);
+            r->walked += tyni_pass_now(p) - start;
+        }
     }
     for (int32_t c = 0; c < 3 && !p->last; c++)
         memcpy(sum + c * r->count, r->light[c], bytes);
@@ -415,29 +421,62 @@ static uint64_t light_run(const tyni_pass *p, run *r, int dark, float *sum)
         finish(p, r);
     if (TYNI_HAS(TYN_PART_DEBUG) && p->frame->debug && p->frame->target.pixels)
         draw_debug(p, r, r->value);
-    return took;
 }
 
-/* q: NULL where the picture is not the usual one. */
-static void draw_run(const tyni_pass *p, run *r, tile *t, picture *q, float *sum)
+/* q: NULL where the picture is not the usual one. timed: clocks take as long as some pixels, and are read in one row of a band.
+ */
+static void draw_run(const tyni_pass *p, run *r, tile *t, picture *q, float *sum, int timed)
 {
     /* where the lines hold marks there is no light to see */
     int dark = p->method == TYN_METHOD_NONE || tyni_debug_marks(p->frame->debug);
-    uint64_t before = r->now, middle, took = 0;
+    const uint64_t walked = r->walked, start = timed ? tyni_pass_now(p) : 0;
     r->shared = 0;
     memset(r->rejected, 0, sizeof *r->rejected * (size_t)tyni_sample_words(r->count));
     see(p, r);
     if (!dark)
         unwarp(p, r, t);
-    middle = tyni_pass_now(p);
-    if (q && tyni_sample_next(r->rejected, 0, r->count - 1) >= r->count)
+    if (timed)
+        r->row[0] = tyni_pass_now(p) - start;
+    if (q && !rejects(r))
         paint(p, r, q);
     else
-        took = light_run(p, r, dark, sum);
-    r->now = tyni_pass_now(p);
-    *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += middle - before;
-    r->stats->correct_ns += took;
-    r->stats->composite_ns += r->now - middle - took;
+        light_run(p, r, dark, sum);
+    if (timed) {
+        r->now = tyni_pass_now(p);
+        r->row[1] = r->now - start - r->row[0] - (r->walked - walked);
+    }
+}
+
+/* all * part / whole, for less than a second. Not by 64-bit division, which small machines have out of their compiler's library
+ * alone. */
+static uint32_t part_of(uint64_t all, uint64_t part, uint64_t whole)
+{
+    const uint32_t second = 0x3fffffff;
+    if (!((uint32_t)whole & second))
+        return 0;
+    return (uint32_t)((float)((uint32_t)all & second) *
+                      tyni_minf((float)((uint32_t)part & second) / (float)((uint32_t)whole & second), 1.0f));
+}
+
+/* The run's pixels in rows first .. end - 1. A run in all rows before the next run: rows below one another read the same lines
+ * of memory. */
+static void draw_rows(const tyni_pass *p, run *r, tile *t, picture *q, float *room, int32_t first, int32_t end)
+{
+    const uint64_t before = r->now;
+    uint64_t all;
+    uint32_t light;
+    r->walked = 0;
+    t->sector = NULL;
+    for (r->y = first; r->y < end; r->y++) {
+        float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r->y * p->view.width + r->x) * 3 : NULL;
+        r->depth = tyni_door_row(&p->depth, r->x, r->y, r->count, room);
+        draw_run(p, r, t, q, sum, r->y == end - 1);
+    }
+    all = r->now - before - r->walked;
+    light = part_of(all, r->row[1], r->row[0] + r->row[1]);
+    *(tyni_pass_gridded(p) ? &r->stats->upscale_ns : &r->stats->unwarp_ns) += all - light;
+    r->stats->correct_ns += r->walked;
+    r->stats->composite_ns += light;
 }
 
 void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
@@ -470,14 +509,8 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
     r.mill = s.mill;
     r.stats = s.stats;
     r.now = tyni_pass_now(p);
-    /* a run in all rows before the next run: rows below one another read the same lines of memory */
     for (r.x = 0; r.x < p->view.width; r.x += r.count) {
         r.count = tyni_mini(most, p->view.width - r.x);
-        t.sector = NULL;
-        for (r.y = index * TYNI_PIXEL_BAND; r.y < end; r.y++) {
-            float *sum = p->context->light ? p->context->light + ((ptrdiff_t)r.y * p->view.width + r.x) * 3 : NULL;
-            r.depth = tyni_door_row(&p->depth, r.x, r.y, r.count, s.depth);
-            draw_run(p, &r, &t, q, sum);
-        }
+        draw_rows(p, &r, &t, q, s.depth, index * TYNI_PIXEL_BAND, end);
     }
 }

@@ -219,6 +219,8 @@ const tyni_sector *tyni_slice_span(const tyni_slices *g, int32_t first, int32_t 
     const float dy = y * g->ew - g->ey, s = (float)size;
     const int side = side_of(g, first, s, dy);
     const tyni_sector *sector = &g->sectors[side == 1 ? 2 + (dy < 0.0f) : side == 0];
+    if (side_of(g, end - 1, s, dy) == side) /* most spans are whole */
+        first = end;
     while (first < end) {
         const int32_t middle = first + (end - first) / 2;
         if (side_of(g, middle, s, dy) > side)
