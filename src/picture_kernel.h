@@ -4,6 +4,26 @@
  * longer: two vectors go together, and their six chains step by step. */
 #define CHAINS 6
 
+/* medium_mix of both vectors; what is the same for all pixels is known before. */
+TYNI_V_INLINE void TYNI_V(picture_mix)(const picture *q, const v_float cosine[2], v_float mix[CHAINS])
+{
+    const tyni_medium *m = &q->medium;
+    TYNI_UNROLL_MORE
+    for (int32_t n = 0; n < CHAINS; n++)
+        mix[n] = m->isotropic[n % 3] + m->rayleigh[n % 3] * (1.0f + cosine[n / 3] * cosine[n / 3]);
+    for (int32_t i = 0; i < m->hg_count; i++) {
+        v_float f[2];
+        TYNI_UNROLL
+        for (int32_t k = 0; k < 2; k++) {
+            const v_float d = v_max(q->base[i] + q->slope[i] * (1.0f - cosine[k]), v_set(1e-12f));
+            f[k] = 1.0f / (d * v_sqrt(d));
+        }
+        TYNI_UNROLL_MORE
+        for (int32_t n = 0; n < CHAINS; n++)
+            mix[n] = mix[n] + m->hg[i].scale[n % 3] * f[n / 3];
+    }
+}
+
 /* Exposed colours to words of the target. x: of each vector's first pixel. */
 TYNI_V_INLINE void TYNI_V(picture_encode)(const picture *q, const int32_t x[2], v_float rgb[CHAINS], v_int out[2])
 {
@@ -35,7 +55,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, cons
     const tyni_medium *m = &q->medium;
     for (int32_t i = 0; i < r->count && v_n > 1; i += 2 * v_n) { /* one lane has too few registers to gain */
         uint8_t part[2][4 * v_n];
-        v_float to[2], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
+        v_float to[2], cosine[2], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
         v_int out[2];
         int32_t at[2], x[2];
         at[0] = i;
@@ -46,20 +66,19 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, cons
             to[k] = v_load(r->to + at[k]);
             rgb[3 * k] = v_load(r->value[0] + at[k]);
             rgb[3 * k + 1] = v_load(r->value[1] + at[k]);
-            rgb[3 * k + 2] = TYNI_V(pixel_between)(rgb[3 * k], rgb[3 * k + 1], m->blend);
-            TYNI_V(medium_mix)(m, v_load(r->cosine + at[k]), mix + 3 * k);
+            rgb[3 * k + 2] = (q->between[0] * rgb[3 * k] + q->between[1] * rgb[3 * k + 1]) +
+                             q->between[2] * v_sqrt(rgb[3 * k] * rgb[3 * k + 1]);
+            cosine[k] = v_load(r->cosine + at[k]);
         }
+        TYNI_V(picture_mix)(q, cosine, mix);
         TYNI_UNROLL_MORE
         for (int32_t n = 0; n < CHAINS; n++)
             left[n] = m->sigma[n % 3] * to[n / 3];
         v_fades(left, CHAINS, left, lost);
         TYNI_UNROLL_MORE
         for (int32_t n = 0; n < CHAINS; n++) {
-            v_float norm = to[n / 3];
-            if (q->inverse[n % 3] > 0.0f)
-                norm = lost[n] * q->inverse[n % 3];
-            norm = rgb[n] * norm * (mix[n] * q->colour[n % 3]);
-            rgb[n] = v_select(v_gt(to[n / 3], v_set(0.0f)), norm, v_set(0.0f));
+            const v_float light = rgb[n] * (lost[n] * q->inverse[n % 3]) * (mix[n] * q->colour[n % 3]);
+            rgb[n] = v_select(v_gt(to[n / 3], v_set(0.0f)), light, v_set(0.0f));
         }
         TYNI_UNROLL
         for (int32_t k = 0; k < 2; k++) {

@@ -80,12 +80,14 @@ static int32_t shift_of(const tyni_slices *slices)
     return shift;
 }
 
-/* The usual picture: one sun over all of the screen, out of four bytes a pixel into four. Channels are in the order of the
- * medium's least extinction, its largest and the one between. */
+/* The usual picture: one sun over all of the screen in air that takes from all channels, out of four bytes a pixel into four.
+ * Channels are in the order of the medium's least extinction, its largest and the one between. */
 typedef struct picture {
     tyni_medium medium;
-    float inverse[3], colour[3];            /* 1 / extinction, 0 for none; of the sun */
-    int32_t from_byte[3], shift[3], opaque; /* in pixels of four bytes; in words */
+    float inverse[3], colour[3];                     /* 1 / extinction; of the sun */
+    float between[3];                                /* pixel_between's factors of the least, the largest and their root */
+    float base[TYN_MAX_MEDIA], slope[TYN_MAX_MEDIA]; /* Henyey and Greenstein's (1 - g)^2 and 2 g */
+    int32_t from_byte[3], shift[3], opaque;          /* in pixels of four bytes; in words */
     float exposure;
     tyn_tone tone;
     /* of a run */
@@ -350,7 +352,7 @@ static int four_bytes(tyn_format format)
 }
 
 /* Whether this light's pictures are the usual ones, and if so what is the same in all runs. */
-static int usual(const tyni_pass *p, picture *q)
+static TYNI_NOINLINE int usual(const tyni_pass *p, picture *q)
 {
     const tyn_frame *f = p->frame;
     const tyni_medium *m = &p->medium;
@@ -365,17 +367,24 @@ static int usual(const tyni_pass *p, picture *q)
     q->medium = *m;
     for (int32_t n = 0; n < 3; n++) {
         const int32_t c = order[n];
-        if (p->fog[c] != m->sigma[c])
+        if (p->fog[c] != m->sigma[c] || m->sigma[c] <= TYNI_SIGMA_LEAST)
             return 0;
         q->medium.sigma[n] = m->sigma[c];
         q->medium.isotropic[n] = m->isotropic[c];
         q->medium.rayleigh[n] = m->rayleigh[c];
         for (int32_t i = 0; i < m->hg_count; i++)
             q->medium.hg[i].scale[n] = m->hg[i].scale[c];
-        q->inverse[n] = m->sigma[c] > TYNI_SIGMA_LEAST ? 1.0f / m->sigma[c] : 0.0f;
+        q->inverse[n] = 1.0f / m->sigma[c];
         q->colour[n] = p->lamp->colour[c];
         q->from_byte[n] = f->colour.format == TYN_BGRA8_SRGB ? 2 - c : c;
         q->shift[n] = 8 * (f->target.format == TYN_BGRA8_SRGB ? 2 - c : c);
+    }
+    q->between[0] = (1.0f - m->blend) * (1.0f - m->blend);
+    q->between[1] = m->blend * m->blend;
+    q->between[2] = 2.0f * (1.0f - m->blend) * m->blend;
+    for (int32_t i = 0; i < m->hg_count; i++) {
+        q->base[i] = (1.0f - m->hg[i].g) * (1.0f - m->hg[i].g);
+        q->slope[i] = 2.0f * m->hg[i].g;
     }
     q->opaque = (int32_t)0xff000000u;
     q->exposure = f->display.exposure > 0.0f ? f->display.exposure : 1.0f;
@@ -383,7 +392,7 @@ static int usual(const tyni_pass *p, picture *q)
     return 1;
 }
 
-static void paint(const tyni_pass *p, const run *r, picture *q)
+static TYNI_NOINLINE void paint(const tyni_pass *p, const run *r, picture *q)
 {
     q->from = (const uint8_t *)tyni_image_row(&p->frame->colour, r->y) + (ptrdiff_t)r->x * 4;
     q->target = (uint8_t *)tyni_image_row(&p->frame->target, r->y) + (ptrdiff_t)r->x * 4;

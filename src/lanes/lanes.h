@@ -27,7 +27,7 @@
  *     v_select(m, a, b)                  m ? a : b
  *     v_exp(x) v_fog(x) v_log(x)         the bits of tyni_num_exp, tyni_num_fog, tyni_num_log
  *     v_fade(x, &left, &lost)            the bits of tyni_num_fade
- *     v_fades(x, n, left, lost)          v_fade of x[0 .. n - 1], n up to 6: faster than one after the other
+ *     v_fades(x, n, left, lost)          v_fade of x[0 .. n - 1], n up to 6, faster than one by one; x may be left
  *     v_sincos(x, &s, &c) v_atan2(y, x)  the bits of tyni_num_sincos, tyni_num_atan2
  * Integers, wrapping:
  *     v_iadd v_isub v_imul v_imin v_imax v_iand v_ior v_ixor v_iandnot(a, b) = a & ~b
