@@ -52,7 +52,6 @@ TYNI_V_INLINE void TYNI_V(picture_encode)(const picture *q, const int32_t x[2], 
  * what they hand on by planes stays in registers here. */
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, const picture *q)
 {
-    const tyni_medium *m = &q->medium;
     for (int32_t i = 0; i < r->count && v_n > 1; i += 2 * v_n) { /* one lane has too few registers to gain */
         uint8_t part[2][4 * v_n];
         v_float to[2], cosine[2], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
@@ -73,7 +72,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, cons
         TYNI_V(picture_mix)(q, cosine, mix);
         TYNI_UNROLL_MORE
         for (int32_t n = 0; n < CHAINS; n++)
-            left[n] = m->sigma[n % 3] * to[n / 3];
+            left[n] = q->medium.sigma[n % 3] * to[n / 3];
         v_fades(left, CHAINS, left, lost);
         TYNI_UNROLL_MORE
         for (int32_t n = 0; n < CHAINS; n++) {

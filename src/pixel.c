@@ -357,7 +357,7 @@ static TYNI_NOINLINE int usual(const tyni_pass *p, picture *q)
     const tyn_frame *f = p->frame;
     const tyni_medium *m = &p->medium;
     const int32_t order[3] = {m->low, m->high, m->middle};
-    if (!WIDE(p->context->config.isa) || !p->first || !p->last || p->count == 3 || p->method == TYN_METHOD_NONE ||
+    if (!p->first || !p->last || p->count == 3 || p->method == TYN_METHOD_NONE ||
         (p->method == TYN_METHOD_MARCH && !tyni_pass_gridded(p)) || tyni_prefilter_kept(p->method) ||
         tyni_view_kind(p->lamp) != TYN_LIGHT_DIRECTIONAL || tyni_view_bounded(p->lamp))
         return 0;
@@ -499,7 +499,7 @@ void tyni_pixel_band(void *argument, int32_t index, int32_t worker)
     tyni_pass_scratch(p->context, worker, &s);
     memset(&r, 0, sizeof r);
     memset(&t, 0, sizeof t);
-    q = usual(p, (picture *)(void *)s.bundle) ? (picture *)(void *)s.bundle : NULL;
+    q = WIDE(p->context->config.isa) && usual(p, (void *)s.bundle) ? (void *)s.bundle : NULL;
     /* where a line's values were: three arrays, three samples in each */
     t.room = p->context->points / 3 - 16;
     for (int32_t j = 0; j < TILE_SAMPLES; j++)

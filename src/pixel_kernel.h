@@ -280,7 +280,7 @@ typedef struct TYNI_V(pixel_pair) {
 } TYNI_V(pixel_pair);
 
 /* pixel_between_lines of both; 0: for one of them lines are too many. */
-TYNI_V_INLINE int TYNI_V(pixel_pair_lines)(const float *const scales[2], const float *k, int32_t first, int32_t last,
+TYNI_V_INLINE int TYNI_V(pixel_pair_lines)(float *const scales[2], const float *k, int32_t first, int32_t last,
                                            TYNI_V(pixel_pair) * q)
 {
     TYNI_UNROLL
@@ -376,15 +376,12 @@ static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni
                                                                       const tyni_sector *sector, const tile *t, int32_t first,
                                                                       int32_t end)
 {
-    const tyni_field *field = &p->lines;
-    const float *const scales[2] = {field->scales[0], field->scales[1]};
-    const uint32_t *row = t ? t->row[r->y - t->sample] - t->low : NULL;
     int32_t i = first;
-    for (; v_n > 1 && (row || !sector->along_y) && end - i >= 2 * v_n; i += 2 * v_n) {
+    for (; v_n > 1 && (t || !sector->along_y) && end - i >= 2 * v_n; i += 2 * v_n) {
         TYNI_V(pixel_pair) q;
         TYNI_V(pixel_sum) s[2];
         v_mask wanted[2];
-        if (!TYNI_V(pixel_pair_lines)(scales, r->value[0] + i, sector->start, sector->count - 2, &q))
+        if (!TYNI_V(pixel_pair_lines)(p->lines.scales, r->value[0] + i, sector->start, sector->count - 2, &q))
             break;
         TYNI_UNROLL
         for (int32_t n = 0; n < 2; n++) {
@@ -392,7 +389,8 @@ static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni
             wanted[n] = v_gt(to, v_set(0.0f));
             q.at[n] = v_max(to * v_load(r->nearness + i + n * v_n), v_set(TYNI_ENTRY_NEAREST));
         }
-        if (row) {
+        if (t) {
+            const uint32_t *row = t->row[r->y - t->sample] - t->low;
             const int32_t low = tyni_mini(q.low[0], q.low[1]), high = tyni_maxi(q.low[0] + q.span[0], q.low[1] + q.span[1]) + 1;
             if (low < t->low || high >= t->low + t->count)
                 break;
@@ -400,11 +398,11 @@ static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni
             for (int32_t n = 0; n < 4; n++)
                 q.entry[n >> 1][n & 1] = v_ipick(row + q.low[n >> 1] + (n & 1), q.place[n >> 1]);
         } else {
-            if (r->x + i + 2 * v_n > field->pitch)
+            if (r->x + i + 2 * v_n > p->lines.pitch)
                 break;
-            TYNI_V(pixel_pair_along)(field, r->x + i, &q);
+            TYNI_V(pixel_pair_along)(&p->lines, r->x + i, &q);
         }
-        TYNI_V(pixel_pair_taps)(&q, field->threshold, s);
+        TYNI_V(pixel_pair_taps)(&q, p->lines.threshold, s);
         TYNI_UNROLL
         for (int32_t n = 0; n < 2; n++) {
             const v_mask fits = v_mand(wanted[n], v_gt(s[n].weight, v_set(TYNI_GATHER_ENOUGH)));
