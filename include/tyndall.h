@@ -556,7 +556,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_ROW_BYTES 1216
 #define TYN_BUNDLE_BYTES 2048
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
-#define TYNI_RUN(samples) ((size_t)((samples) < 512 ? ((samples) + 1) / 2 : 256))
+#define TYNI_RUN(samples) ((size_t)((samples) < 1024 ? ((samples) + 1) / 2 : 512))
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))
 #define TYNI_SAMPLES(width, height, samples)                                                                                   \
     ((size_t)((samples) < TYNI_LONGER(width, height) ? (samples) : TYNI_LONGER(width, height)))

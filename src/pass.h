@@ -18,7 +18,7 @@
 
 /* Pixels of a row that go through their stages together: at most this, nor more than half of a line's samples. A multiple of
  * 16. */
-#define TYNI_PASS_RUN 256
+#define TYNI_PASS_RUN 512
 #define TYNI_PASS_PLANES 11
 
 /* What one worker needs for one slice, or for a run of pixels: small enough for its caches. */

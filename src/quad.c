@@ -16,6 +16,9 @@
 /* The pixels of a row share one if their depths are within a 64th of each other: the square of that. */
 #define EVEN (1.0f / 1024.0f)
 
+/* Pixels of a run at most: a line's bits have room for 16 words at least, and two rows' lie in there. */
+#define RUN 256
+
 /* ---- which frames ---- */
 
 int tyni_quad_takes(const tyni_pass *p)
@@ -120,14 +123,14 @@ static void take_scratch(tyni_quads *q, const tyni_pass *p, const tyni_scratch *
     q->decode = (void *)s->row;
     q->fade = (void *)s->bundle;
     q->span = span_of(p);
-    q->run = tyni_mini(2 * length, tyni_mini(points, TYNI_PASS_RUN));
+    q->run = tyni_mini(2 * length, tyni_mini(points, RUN));
     q->entry = (int32_t *)(void *)s->plane[0];
     q->part = (int32_t *)(void *)s->plane[1];
     q->knot = (void *)s->plane[2];
     q->rise = q->knot + q->run / q->span + 2;
     TYNI_ASSERT((void *)(q->rise + q->run / q->span + 2) <= (void *)(s->plane[2] + (TYNI_PASS_PLANES - 2) * length));
     q->rejected[0] = s->fresh;
-    q->rejected[1] = s->fresh + TYNI_PASS_RUN / 32; /* a line's bits have room for 16 words at least */
+    q->rejected[1] = s->fresh + RUN / 32;
     q->stats = s->stats;
 }
 
@@ -439,7 +442,7 @@ static void draw_rows(tyni_quads *q, const tyni_scratch *s, int32_t rows)
         q->depth[i] = tyni_door_row(&p->depth, q->x, q->y + i, q->count, i ? s->value[0] : s->depth);
         q->from[i] = (const uint8_t *)tyni_image_row(&p->frame->colour, q->y + i) + (ptrdiff_t)q->x * q->from_bytes;
         q->to[i] = (uint8_t *)tyni_image_row(&p->frame->target, q->y + i) + (ptrdiff_t)q->x * q->to_bytes;
-        memset(q->rejected[i], 0, TYNI_PASS_RUN / 8);
+        memset(q->rejected[i], 0, RUN / 8);
     }
     places(q);
     pair_of_rows(q, rows);
