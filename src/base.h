@@ -51,6 +51,14 @@
 #define TYNI_UNROLL_MORE
 #endif
 
+/* Long chains of operations that go side by side, three channels of so many vectors. Where code is to be small they lie on the
+ * stack. */
+#ifdef __OPTIMIZE_SIZE__
+#define TYNI_CHAINS 3
+#else
+#define TYNI_CHAINS 6
+#endif
+
 /* Of rare work whose stack the caller should not carry. */
 #if defined(__GNUC__)
 #define TYNI_NOINLINE __attribute__((noinline))

@@ -1,13 +1,12 @@
-/* beside_kernel.h - a template: samples beside the place of pixels that fit none there, for pixel.c. As ED10's taps look for
- * them.
- */
+/* beside_kernel.h - a template, for unwarp.c: pixels that fit no sample at their place look for some beside it, as ED10's taps
+ * do. */
 
 /* How many samples away. */
 #define BESIDE 4
 
 /* Of pixels first .. end - 1 of the run, all in one sector of the shear grid, those that fit no sample at their place: side by
  * side, as they are few and far apart. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p, const run *r, const tyni_sector *sector,
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector,
                                                              int32_t first, int32_t end)
 {
     const tyni_field *field = &p->lines;

@@ -1,4 +1,4 @@
-/* format_kernel.h - a template: pixels of the formats in and out, for the kernels of composite.c and pixel.c. */
+/* format_kernel.h - a template: pixels of the formats in and out, for the kernels of composite.c and picture.c. */
 
 /* Up to v_n pixels from p on, n of them there. */
 TYNI_V_INLINE void TYNI_V(format_load)(tyn_format format, const uint8_t *p, int32_t n, v_float rgb[3])
@@ -25,12 +25,13 @@ TYNI_V_INLINE void TYNI_V(format_load)(tyn_format format, const uint8_t *p, int3
     }
 }
 
-/* n vectors, 3 or 6, from 0 .. 1 linear to 0 .. 1 encoded (IEC 61966-2-1), within 2e-6: the mantissa's power is a polynomial,
- * the exponent's a table. They go term by term: each is one long chain, and one after the other they would be waited for. */
+/* n vectors, at most TYNI_CHAINS, from 0 .. 1 linear to 0 .. 1 encoded (IEC 61966-2-1), within 2e-6: the mantissa's power is a
+ * polynomial, the exponent's a table. They go term by term: each is one long chain, and one after the other they would be
+ * waited for. */
 TYNI_V_INLINE void TYNI_V(format_encode)(v_float *x, int32_t n)
 {
     static const float term[4] = {0.202089757f, -0.482285205f, 0.946032156f, 0.378249163f};
-    v_float m[6], p[6];
+    v_float m[TYNI_CHAINS], p[TYNI_CHAINS];
     TYNI_UNROLL_MORE
     for (int32_t c = 0; c < n; c++) {
         m[c] = v_from_bits(v_ior(v_iand(v_bits(x[c]), v_iset(0x7fffff)), v_iset(0x3f800000)));

@@ -4,9 +4,9 @@
  *       slice jobs (trace.c):  depth along the line -> break bits -> ray samples -> row of thresholds -> visibility at the rays
  *                              -> interpolation -> the finished line into memory
  *       grid jobs (trace.c):   only with downscale or sub-sampling: the points of a coarse picture, from the lines or by rays
- *       pixel jobs (pixel.c):  the two nearest lines (or four points) -> visibility -> light; rejected pixels by rays of their
- *                              own; after the last light transmittance, colour, exposure, tone, dither, format; quad.c has
- * those of handhelds, four at a time */
+ *       pixel jobs (pixel.c):  the two nearest lines (or four points) -> visibility (unwarp.c) -> light; rejected pixels by
+ * rays of their own; after the last light transmittance, colour, exposure, tone, dither, format. The usual picture goes from
+ * visibility to the end at once (picture.c); quad.c has those of handhelds, four at a time */
 #include "frame.h"
 
 #include "art.h"

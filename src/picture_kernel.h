@@ -1,20 +1,21 @@
-/* picture_kernel.h - a template: from visibility to the picture at once, for pixel.c. Planes have room for whole vectors. */
+/* picture_kernel.h - a template: from visibility to the picture at once, for picture.c. Planes have room for whole vectors. */
 
 /* A channel of a vector is a chain of a hundred operations that wait for one another, and what a core looks ahead is hardly
  * longer: two vectors go together, and their six chains step by step. */
-#define CHAINS 6
+#define CHAINS TYNI_CHAINS
+#define VECTORS (CHAINS / 3)
 
-/* medium_mix of both vectors; what is the same for all pixels is known before. */
-TYNI_V_INLINE void TYNI_V(picture_mix)(const picture *q, const v_float cosine[2], v_float mix[CHAINS])
+/* medium_mix of the vectors; what is the same for all pixels is known before. */
+TYNI_V_INLINE void TYNI_V(picture_mix)(const tyni_picture *q, const v_float cosine[VECTORS], v_float mix[CHAINS])
 {
     const tyni_medium *m = &q->medium;
     TYNI_UNROLL_MORE
     for (int32_t n = 0; n < CHAINS; n++)
         mix[n] = m->isotropic[n % 3] + m->rayleigh[n % 3] * (1.0f + cosine[n / 3] * cosine[n / 3]);
     for (int32_t i = 0; i < m->hg_count; i++) {
-        v_float f[2];
+        v_float f[VECTORS];
         TYNI_UNROLL
-        for (int32_t k = 0; k < 2; k++) {
+        for (int32_t k = 0; k < VECTORS; k++) {
             const v_float d = v_max(q->base[i] + q->slope[i] * (1.0f - cosine[k]), v_set(1e-12f));
             f[k] = 1.0f / (d * v_sqrt(d));
         }
@@ -25,7 +26,8 @@ TYNI_V_INLINE void TYNI_V(picture_mix)(const picture *q, const v_float cosine[2]
 }
 
 /* Exposed colours to words of the target. x: of each vector's first pixel. */
-TYNI_V_INLINE void TYNI_V(picture_encode)(const picture *q, const int32_t x[2], v_float rgb[CHAINS], v_int out[2])
+TYNI_V_INLINE void TYNI_V(picture_encode)(const tyni_picture *q, const int32_t x[VECTORS], v_float rgb[CHAINS],
+                                          v_int out[VECTORS])
 {
     const int32_t film = q->tone == TYN_TONE_FILM;
     const v_float most = v_set(film ? 1e30f : 1.0f);
@@ -39,7 +41,7 @@ TYNI_V_INLINE void TYNI_V(picture_encode)(const picture *q, const int32_t x[2], 
     }
     TYNI_V(format_encode)(rgb, CHAINS);
     TYNI_UNROLL
-    for (int32_t k = 0; k < 2; k++) {
+    for (int32_t k = 0; k < VECTORS; k++) {
         const v_float offset = v_load(q->offset + (x[k] & 7));
         out[k] = v_iset(q->opaque);
         TYNI_UNROLL
@@ -50,17 +52,16 @@ TYNI_V_INLINE void TYNI_V(picture_encode)(const picture *q, const int32_t x[2], 
 
 /* Light and what is left of the surfaces, added. The bits are those of pixel_shade and composite_blend one after the other;
  * what they hand on by planes stays in registers here. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, const picture *q)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const tyni_run *r, const tyni_picture *q)
 {
-    for (int32_t i = 0; i < r->count && v_n > 1; i += 2 * v_n) { /* one lane has too few registers to gain */
-        uint8_t part[2][4 * v_n];
-        v_float to[2], cosine[2], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
-        v_int out[2];
-        int32_t at[2], x[2];
-        at[0] = i;
-        at[1] = i + v_n < r->count ? i + v_n : i; /* where there is no second vector it is the first again */
+    for (int32_t i = 0; i < r->count && v_n > 1; i += VECTORS * v_n) { /* one lane has too few registers to gain */
+        uint8_t part[VECTORS][4 * v_n];
+        v_float to[VECTORS], cosine[VECTORS], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
+        v_int out[VECTORS];
+        int32_t at[VECTORS], x[VECTORS];
         TYNI_UNROLL
-        for (int32_t k = 0; k < 2; k++) {
+        for (int32_t k = 0; k < VECTORS; k++) {
+            at[k] = i + k * v_n < r->count ? i + k * v_n : i; /* where there is no second vector it is the first again */
             x[k] = r->x + at[k];
             to[k] = v_load(r->to + at[k]);
             rgb[3 * k] = v_load(r->value[0] + at[k]);
@@ -80,7 +81,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, cons
             rgb[n] = v_select(v_gt(to[n / 3], v_set(0.0f)), light, v_set(0.0f));
         }
         TYNI_UNROLL
-        for (int32_t k = 0; k < 2; k++) {
+        for (int32_t k = 0; k < VECTORS; k++) {
             const uint8_t *from = q->from + 4 * (ptrdiff_t)at[k];
             if (r->count - at[k] < v_n)
                 from = memcpy(memset(part[k], 0, sizeof part[k]), from, 4 * (size_t)(r->count - at[k]));
@@ -92,9 +93,10 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const run *r, cons
         }
         TYNI_V(picture_encode)(q, x, rgb, out);
         TYNI_UNROLL
-        for (int32_t k = 0; k < 2; k++)
+        for (int32_t k = 0; k < VECTORS; k++)
             v_istore_n(q->target + 4 * (ptrdiff_t)at[k], out[k], r->count - at[k]);
     }
 }
 
 #undef CHAINS
+#undef VECTORS

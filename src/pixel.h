@@ -3,11 +3,9 @@
 #ifndef TYNI_PIXEL_H
 #define TYNI_PIXEL_H
 
-#include "pass.h"
+#include "run.h"
 
 #include "base.h"
-
-#define TYNI_PIXEL_BAND 8 /* rows of pixels a job */
 
 void tyni_pixel_band(void *pass, int32_t index, int32_t worker);
 

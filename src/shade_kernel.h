@@ -51,10 +51,10 @@ TYNI_V_INLINE v_float TYNI_V(pixel_arrives)(float sigma, float inverse, v_float 
 
 /* Visibility times the light of the sun that would be there without shadows. The phase function comes in here, last: it varies
  * fast near the epipole (IVB section 6.8). What is lost on the way is what surfaces lose, where the run says so: `shared`. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade)(const tyni_pass *p, const run *r)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade)(const tyni_pass *p, const tyni_run *r)
 {
     const tyni_medium m = p->medium; /* copies are none of what is written */
-    const run own = *r;
+    const tyni_run own = *r;
     const int32_t count = p->count;
     const int bounded = tyni_view_bounded(p->lamp);
     float inverse[3], colour[3];
@@ -158,7 +158,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_norm)(const tyni_medium *m,
 }
 
 /* The same for the light of a lamp at a point; tyni_prefilter_light where lines hold visibility of that. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade_local)(const tyni_pass *p, const run *r)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade_local)(const tyni_pass *p, const tyni_run *r)
 {
     const tyni_medium *m = &p->medium;
     for (int32_t i = 0; i < r->count; i += v_n) {
@@ -195,7 +195,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_shade_local)(const tyni_pas
 }
 
 /* e^(-extinction s) */
-static TYNI_V_TARGET void TYNI_V(pixel_share)(const tyni_pass *p, const run *r)
+static TYNI_V_TARGET void TYNI_V(pixel_share)(const tyni_pass *p, const tyni_run *r)
 {
     for (int32_t i = 0; i < r->count; i += v_n) {
         const v_float s = v_load(r->reach + i);

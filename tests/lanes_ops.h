@@ -10,12 +10,13 @@ TYNI_V_INLINE v_float TYNI_V(test_wave)(v_float x, int second)
 
 TYNI_V_INLINE v_float TYNI_V(test_fade)(v_float x, int lost)
 {
-    v_float out[2], many[6], left[6], gone[6];
-    for (int32_t n = 0; n < 6; n++)
-        many[n] = n == 4 ? x : v_set(0.5f * (float)n);
-    v_fades(many, 6, left, gone);
+    v_float out[2], many[TYNI_CHAINS], left[TYNI_CHAINS], gone[TYNI_CHAINS];
+    for (int32_t n = 0; n < TYNI_CHAINS; n++)
+        many[n] = n == TYNI_CHAINS - 2 ? x : v_set(0.5f * (float)n);
+    v_fades(many, TYNI_CHAINS, left, gone);
     v_fade(x, &out[0], &out[1]);
-    return v_select(v_eq(out[lost], lost ? gone[4] : left[4]), out[lost], v_set(-1.0f)); /* both are the same */
+    return v_select(v_eq(out[lost], lost ? gone[TYNI_CHAINS - 2] : left[TYNI_CHAINS - 2]), out[lost],
+                    v_set(-1.0f)); /* both are the same */
 }
 
 /* Results that hold numbers: any NaN is as good as any other. */

@@ -11,7 +11,7 @@ system_headers='float.h stddef.h stdint.h string.h math.h'
 intrinsics='emmintrin.h immintrin.h arm_neon.h wasm_simd128.h'
 # The rooms in the order in which data flows: each may include those before it.
 order='base num vec arena check lanes config door jobs slide view art fit helpers cascade rectify medium raster slice border course row tree sweep sample line
-    meter walk ray query columns knot fourier lookup prefilter entry gather composite pass debug trace chart shade pixel quads stray quad frame tyndall'
+    meter walk ray query columns knot fourier lookup prefilter entry gather composite pass debug trace chart run unwarp picture shade pixel quads stray quad frame tyndall'
 
 work=$B/proofs
 sources=$(ls src/*.c src/*/*.c 2>/dev/null)
@@ -59,7 +59,7 @@ level() { # NAME SYMBOLS
     fi
 }
 level post 'tyni?_raster'
-level raster 'tyn_render|tyni_(frame|pixel|quads|stray|quad|trace|chart|pass|slice|border|row|tree|sweep|sample|ray|walk|columns|fourier|prefilter|gather|composite)_'
+level raster 'tyn_render|tyni_(frame|pixel|unwarp|picture|quads|stray|quad|trace|chart|pass|slice|border|row|tree|sweep|sample|ray|walk|columns|fourier|prefilter|gather|composite)_'
 
 # ---- what it includes ----
 

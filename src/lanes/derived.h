@@ -193,11 +193,11 @@ TYNI_V_INLINE v_float v_fog(v_float x)
     return v_select(small, p, (1.0f - v_exp(-x)) / x);
 }
 
-/* Of n at once, 1 .. 6, term by term: each is one long chain, and one after the other they would be waited for. */
+/* Of n at once, 1 .. TYNI_CHAINS, term by term: each is one long chain, and one after the other they would be waited for. */
 TYNI_V_INLINE void v_fades(const v_float *x, int32_t n, v_float *left, v_float *lost)
 {
     static const float term[4] = {0.00966636837f, 0.0555038117f, 0.240223497f, 0.693147182f};
-    v_float r[6], scale[6], p[6];
+    v_float r[TYNI_CHAINS], scale[TYNI_CHAINS], p[TYNI_CHAINS];
     TYNI_UNROLL_MORE
     for (int32_t k = 0; k < n; k++) {
         const v_float t = v_max(x[k] * -1.44269504f, v_set(-126.0f));

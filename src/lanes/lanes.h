@@ -27,7 +27,7 @@
  *     v_select(m, a, b)                  m ? a : b
  *     v_exp(x) v_fog(x) v_log(x)         the bits of tyni_num_exp, tyni_num_fog, tyni_num_log
  *     v_fade(x, &left, &lost)            the bits of tyni_num_fade
- *     v_fades(x, n, left, lost)          v_fade of x[0 .. n - 1], n up to 6, faster than one by one; x may be left
+ *     v_fades(x, n, left, lost)          v_fade of x[0 .. n - 1], n up to TYNI_CHAINS, faster than one by one; x may be left
  *     v_sincos(x, &s, &c) v_atan2(y, x)  the bits of tyni_num_sincos, tyni_num_atan2
  * Integers, wrapping:
  *     v_iadd v_isub v_imul v_imin v_imax v_iand v_ior v_ixor v_iandnot(a, b) = a & ~b
@@ -231,6 +231,13 @@
     ((isa) == TYN_ISA_WASM ? tyni_wasm_##name arguments : tyni_scalar_##name arguments)
 #else
 #define TYNI_LANES_CALL(isa, name, arguments) ((void)(isa), tyni_scalar_##name arguments)
+#endif
+
+/* Whether an ISA has lanes side by side. Where none is built in the compiler knows. */
+#if defined(TYNI_LANES_X86) || defined(TYNI_LANES_NEON) || defined(TYNI_LANES_WASM)
+#define TYNI_LANES_WIDE(isa) ((isa) != TYN_ISA_SCALAR)
+#else
+#define TYNI_LANES_WIDE(isa) 0
 #endif
 
 /* From a config's isa to one that runs here. TYN_E_CONFIG for a number that is none, TYN_E_ISA for one that is not there. */

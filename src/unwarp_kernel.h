@@ -1,6 +1,6 @@
-/* pixel_kernel.h - a template: visibility of a run of pixels from lines, for pixel.c. Planes have room for whole vectors. */
+/* unwarp_kernel.h - a template: visibility of a run of pixels from lines, for unwarp.c. Planes have room for whole vectors. */
 
-static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const run *r, const ahead *a)
+static TYNI_V_TARGET void TYNI_V(pixel_sights)(const tyni_pass *p, const tyni_run *r, const ahead *a)
 {
     const tyni_view *view = &p->view;
     const float py = (float)r->y + 0.5f, far = view->far_depth, most = p->frame->max_distance;
@@ -67,7 +67,7 @@ TYNI_V_INLINE void TYNI_V(pixel_between_lines)(const tyni_field *field, const fl
 }
 
 /* Entries of both lines where lines run along y: all at the sample of this row of the tile. */
-TYNI_V_INLINE void TYNI_V(pixel_down)(const tile *t, int32_t sample, const TYNI_V(pixel_lines) * l, v_int out[2])
+TYNI_V_INLINE void TYNI_V(pixel_down)(const tyni_tile *t, int32_t sample, const TYNI_V(pixel_lines) * l, v_int out[2])
 {
     const uint32_t *row = t->row[sample - t->sample] + (l->low - t->low);
     TYNI_UNROLL
@@ -167,7 +167,8 @@ TYNI_V_INLINE void TYNI_V(pixel_taps)(TYNI_V(pixel_sum) * s, v_float threshold, 
 
 /* Asks for the entries of lines along x that pixels first .. end - 1 need in this row, their places known, and in the rows of
  * the band below: they lie far apart in memory, and one by one each would be waited for. */
-TYNI_V_INLINE void TYNI_V(pixel_call)(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first, int32_t end)
+TYNI_V_INLINE void TYNI_V(pixel_call)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector, int32_t first,
+                                      int32_t end)
 {
     const tyni_slices *g = &p->slices;
     const float most = (float)(sector->count - 1), rows = (float)TYNI_PIXEL_BAND / sector->spacing;
@@ -200,7 +201,7 @@ TYNI_V_INLINE v_float TYNI_V(pixel_place)(const tyni_pass *p, int32_t y, const t
 
 /* Of pixels first .. end - 1 of the run, all in one sector: into value[0]. In a round of its own, so that how many lines a
  * vector needs is known long before its turn. */
-static TYNI_V_TARGET void TYNI_V(pixel_places)(const tyni_pass *p, const run *r, const tyni_sector *sector, int32_t first,
+static TYNI_V_TARGET void TYNI_V(pixel_places)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector, int32_t first,
                                                int32_t end)
 {
     for (int32_t i = first; i < end; i += v_n)
@@ -210,11 +211,11 @@ static TYNI_V_TARGET void TYNI_V(pixel_places)(const tyni_pass *p, const run *r,
 }
 
 /* From there visibility of these pixels. t: entries of the sector's lines along y, or NULL. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p, const run *r, const tyni_sector *sector,
-                                                             const tile *t, int32_t first, int32_t end)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector,
+                                                             const tyni_tile *t, int32_t first, int32_t end)
 {
     const tyni_field field = p->lines; /* copies are none of what is written */
-    const run own = *r;
+    const tyni_run own = *r;
     const int32_t along_y = sector->along_y, start = sector->start, count = sector->count, most = field.pitch - 1;
     const int32_t stride = p->slices.stride, edge = p->slices.width - 1;
     const float step = 1.0f / (float)stride;
@@ -372,9 +373,9 @@ TYNI_V_INLINE void TYNI_V(pixel_pair_taps)(const TYNI_V(pixel_pair) * q, float t
 
 /* pixel_unwarp of two vectors after the other, as long as there are two whole ones and they are of that kind. Returns where it
  * stopped. */
-static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni_pass *p, const run *r,
-                                                                      const tyni_sector *sector, const tile *t, int32_t first,
-                                                                      int32_t end)
+static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni_pass *p, const tyni_run *r,
+                                                                      const tyni_sector *sector, const tyni_tile *t,
+                                                                      int32_t first, int32_t end)
 {
     int32_t i = first;
     for (; v_n > 1 && (t || !sector->along_y) && end - i >= 2 * v_n; i += 2 * v_n) {
