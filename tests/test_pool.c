@@ -24,6 +24,33 @@ static void job(void *argument, int32_t index, int32_t worker)
     t->inside[worker]--;
 }
 
+/* The least number that 32 bits do not hold for each of the most workers. */
+enum { MANY = INT32_MAX / TYN_MAX_WORKERS + 1 };
+
+static void one_of_many(void *argument, int32_t index, int32_t worker)
+{
+    int64_t *sums = argument;
+    if (index < 0 || index >= MANY)
+        abort();
+    sums[8 * worker] += index;
+}
+
+static void test_many(void)
+{
+    static int64_t sums[8 * TYN_MAX_WORKERS]; /* each on a cache line of its own */
+    pool *p = pool_create(TYN_MAX_WORKERS);
+    const tyn_executor *e = p ? pool_executor(p) : NULL;
+    int64_t sum = 0;
+    TEST("a pool deals out more jobs than 32 bits hold for each worker");
+    CHECK(e);
+    if (e)
+        e->run(e->context, one_of_many, sums, MANY);
+    for (int i = 0; i < TYN_MAX_WORKERS; i++)
+        sum += sums[8 * i];
+    CHECK(sum == (int64_t)MANY * (MANY - 1) / 2);
+    pool_free(p);
+}
+
 void test_pool(void)
 {
     static const int32_t sizes[] = {1, 2, 3, 8, TYN_MAX_WORKERS};
@@ -51,4 +78,5 @@ void test_pool(void)
     CHECK(pool_default_workers() >= 1 && pool_default_workers() <= TYN_MAX_WORKERS);
     pool_free(NULL);
     free(t);
+    test_many();
 }

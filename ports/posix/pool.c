@@ -116,7 +116,7 @@ static void wait_for_all(pool *p)
 static void run(void *context, tyn_job job, void *argument, int32_t count)
 {
     pool *p = context;
-    const int64_t workers = p->executor.workers;
+    const int32_t workers = p->executor.workers;
     pthread_mutex_lock(&p->mutex);
     wait_for_all(p); /* threads that woke up too late for the run before */
     p->job = job;
@@ -124,8 +124,8 @@ static void run(void *context, tyn_job job, void *argument, int32_t count)
     p->taken = 0;
     p->count = count;
     for (int32_t i = 0; i < workers; i++) {
-        p->share[i].next = (uint32_t)(count * i / workers);
-        p->share[i].end = (uint32_t)(count * (i + 1) / workers);
+        p->share[i].next = (uint32_t)(count * (int64_t)i / workers);
+        p->share[i].end = (uint32_t)(count * ((int64_t)i + 1) / workers);
     }
     add(&p->run, 1);
     if (count > 1 && workers > 1)
