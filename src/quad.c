@@ -206,6 +206,16 @@ TYNI_QUADS_INLINE void knot_add(tyni_knot *k, const tyni_knot *by)
         k->glow[c] += by->glow[c];
 }
 
+/* On to the next two rows. From the middle of a narrow peak glow falls to almost nothing in a band, and what is rounded on the
+ * way must not leave it below 0: no level is for that. */
+TYNI_QUADS_INLINE void knot_down(tyni_knot *k, const tyni_knot *rise)
+{
+    knot_add(k, rise);
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        k->glow[c] = tyni_maxf(k->glow[c], 0.0f);
+}
+
 /* ---- quads ---- */
 
 /* How the pixels of a quad may be done together: one share for all, one for each row, one for each; or by tyni_stray_each. */
@@ -420,7 +430,7 @@ static TYNI_NOINLINE void pair_of_rows(const tyni_quads *original, int32_t rows)
             step.glow[c] = (next[1].glow[c] - k.glow[c]) * part;
         knot_add(&k, &step);
         knot_add(&step, &step);
-        knot_add(next, &q->rise[next - q->knot]);
+        knot_down(next, &q->rise[next - q->knot]);
         for (ptrdiff_t n = i / 2, done; n < last; n += done) {
             done = n < plain ? some(q, n, last < plain ? last : plain, &k, &step) : 0;
             if (!done) {
@@ -431,7 +441,7 @@ static TYNI_NOINLINE void pair_of_rows(const tyni_quads *original, int32_t rows)
             }
         }
     }
-    knot_add(next, &q->rise[next - q->knot]);
+    knot_down(next, &q->rise[next - q->knot]);
 }
 
 /* Pixels x .. of rows y and y + 1, or of y alone. */

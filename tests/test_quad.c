@@ -298,6 +298,62 @@ static void test_machines(void)
     }
 }
 
+/* A sun in the middle of a quad of a small and wide picture, in air that scatters hardly but straight on: from row to row what
+ * shines there falls by ten orders of magnitude. */
+static void test_peaks(void)
+{
+    enum { WIDE = 8, HIGH = 24 };
+    static const float eye[3] = {0, 0, 0}, ahead[3] = {0, 0, -1}, up[3] = {0, 1, 0};
+    static float depth[WIDE * HIGH], texels[16];
+    static uint8_t colour[4 * WIDE * HIGH], first[4 * WIDE * HIGH];
+    TEST("quads: a narrow peak of the phase function leaves no light below 0");
+    memset(colour, 255, sizeof colour);
+    for (int row = 1; row < HIGH; row += 2) {
+        tyn_medium medium = {{0.02f, 0.02f, 0.02f}, {0, 0, 0}, TYN_PHASE_HG, 0.9999f};
+        tyn_light sun;
+        tyn_frame f;
+        tyn_config c;
+        tyn_context *context;
+        float d[3], length, y;
+        int dark = 0;
+        memset(&sun, 0, sizeof sun);
+        memset(&f, 0, sizeof f);
+        for (int i = 0; i < WIDE * HIGH; i++)
+            depth[i] = (float)(20 + i % 3 * 20);
+        CHECK(tyn_camera_look(&f.camera, eye, ahead, up, 2.9f, 0.1f, 100, WIDE, HIGH) == TYN_OK);
+        y = f.camera.top_edge - (f.camera.top_edge - f.camera.bottom_edge) * (float)row / HIGH;
+        for (int i = 0; i < 3; i++)
+            d[i] = f.camera.forward[i] + y * f.camera.up[i];
+        length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int i = 0; i < 3; i++) {
+            sun.direction[i] = -d[i] / length;
+            sun.colour[i] = 1000;
+        }
+        sun.shadow.size = 4;
+        CHECK(tyn_shadow_fit(&sun, &f.camera, NULL, NULL) == TYN_OK);
+        sun.shadow.depth = texels;
+        f.depth.pixels = depth;
+        f.depth.format = TYN_DEPTH_F32;
+        f.colour.pixels = colour;
+        f.colour.format = TYN_RGBA8_SRGB;
+        f.depth.width = f.colour.width = WIDE;
+        f.depth.height = f.colour.height = HIGH;
+        f.target = f.colour;
+        f.target.pixels = first;
+        f.lights = &sun;
+        f.media = &medium;
+        f.light_count = f.medium_count = 1;
+        CHECK(tyn_config_preset(&c, TYN_PRESET_HANDHELD, WIDE, HIGH) == TYN_OK);
+        c.shadow_size = 4;
+        context = rig_context(&c);
+        CHECK(c.quads && context && tyn_render(context, &f) == TYN_OK);
+        for (size_t i = 0; i < sizeof first; i++)
+            dark += first[i] == 0; /* a third and more is left of white */
+        CHECK(dark == 0);
+        free(context);
+    }
+}
+
 void test_quad(void)
 {
     test_near_march();
@@ -307,4 +363,5 @@ void test_quad(void)
     test_dither();
     test_others();
     test_machines();
+    test_peaks();
 }
