@@ -250,6 +250,7 @@ void tyni_stray_walk(const tyni_quads *q, int32_t row)
         for (int32_t c = 0; c < 3; c++) {
             const float lost = 1.0f - share[c];
             a.light[c] = lost > 0.0f ? tyni_maxf(light[tyni_quads_colour(q, c)], 0.0f) * q->gain / lost : 0.0f;
+            a.light[c] = tyni_minf(a.light[c], 1e20f * q->gain); /* as knots have it: no infinity, whose differences are NaN */
         }
         tyni_stray_put(q, i, row, &a, s);
         q->stats->rejected++;

@@ -1,6 +1,7 @@
 /* test_quad.c - pixels four at a time: near those without, the same bytes however they are asked for, and only where they say
  * so.
  */
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -308,7 +309,7 @@ static void test_peaks(void)
     static uint8_t colour[4 * WIDE * HIGH], first[4 * WIDE * HIGH];
     TEST("quads: a narrow peak of the phase function leaves no light below 0");
     memset(colour, 255, sizeof colour);
-    for (int row = 1; row < HIGH; row += 2) {
+    for (int row = 1; row < HIGH; row += 8) {
         tyn_medium medium = {{0.02f, 0.02f, 0.02f}, {0, 0, 0}, TYN_PHASE_HG, 0.9999f};
         tyn_light sun;
         tyn_frame f;
@@ -327,7 +328,7 @@ static void test_peaks(void)
         length = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         for (int i = 0; i < 3; i++) {
             sun.direction[i] = -d[i] / length;
-            sun.colour[i] = 1000;
+            sun.colour[i] = 1000.0f + 10.0f * (float)(i + row); /* roundings of all kinds */
         }
         sun.shadow.size = 4;
         CHECK(tyn_shadow_fit(&sun, &f.camera, NULL, NULL) == TYN_OK);
@@ -354,6 +355,30 @@ static void test_peaks(void)
     }
 }
 
+/* Depths that no neighbour has: many pixels go by rays of their own. */
+static void test_extremes(void)
+{
+    given *g = given_new(0);
+    static picture out;
+    tyn_light sun = *g->frame.lights;
+    tyn_stats stats;
+    int wrong = 0;
+    TEST("quads: the brightest sun at the greatest exposure leaves light finite");
+    for (int i = 0; i < PIXELS; i++)
+        g->r->depth[i] = g->frame.camera.far_depth * (float)(test_random() % 1000 + 1) / 1000.0f;
+    sun.colour[0] = sun.colour[1] = sun.colour[2] = TYN_MAX_COLOUR;
+    g->frame.lights = &sun;
+    g->frame.display.exposure = 1e12f;
+    g->frame.scatter.pixels = g->scatter;
+    g->frame.stats = &stats;
+    render(g, 1, &out);
+    CHECK(stats.rejected > 0);
+    for (int i = 0; i < 3 * PIXELS; i++)
+        wrong += !(g->scatter[i] >= 0 && g->scatter[i] <= FLT_MAX);
+    CHECK(wrong == 0);
+    given_free(g);
+}
+
 void test_quad(void)
 {
     test_near_march();
@@ -364,4 +389,5 @@ void test_quad(void)
     test_others();
     test_machines();
     test_peaks();
+    test_extremes();
 }
