@@ -117,7 +117,7 @@ static void add_stats(tyn_stats *sum, const tyn_stats *s)
     sum->composite_ns += s->composite_ns;
 }
 
-static void sum_stats(const tyn_context *c, tyn_stats *stats, int64_t pixels)
+static TYNI_NOINLINE void sum_stats(const tyn_context *c, tyn_stats *stats, int64_t pixels)
 {
     for (int32_t w = 0; w < c->config.workers; w++) {
         tyni_scratch s;
@@ -133,7 +133,7 @@ static void sum_stats(const tyn_context *c, tyn_stats *stats, int64_t pixels)
 
 /* ---- the frame ----------------------------------------------------------------------------------------------------- */
 
-static void begin_frame(tyni_pass *p, tyn_context *context, const tyn_frame *frame)
+static TYNI_NOINLINE void begin_frame(tyni_pass *p, tyn_context *context, const tyn_frame *frame)
 {
     for (int32_t w = 0; w < context->config.workers; w++) {
         tyni_scratch s;
