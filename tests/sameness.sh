@@ -178,7 +178,7 @@ one_row() { # NUMBER MACHINE COMPILER FLAGS LANES ROOMS
     times >"$row.times"
     built=$(cpu_seconds)
     # shellcheck disable=SC2086
-    if [ -x "$build/tests" ]; then $run "$build/tests" >>"$row.log" 2>&1; fi
+    if [ -x "$build/tests" ]; then TYN_EMULATED=${run:+1} $run "$build/tests" >>"$row.log" 2>&1; fi
     if [ -x "$build/tyndall" ]; then tool_files >"$work/files/$2" 2>&1; fi
     times >"$row.times"
     all=$(cpu_seconds)
