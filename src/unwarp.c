@@ -116,7 +116,6 @@ static int cover(const tyni_pass *p, const tyni_sector *s, float a, float b, int
 static void unwarp_sector(const tyni_pass *p, const tyni_run *r, const tyni_sector *s, int32_t first, int32_t end, tyni_tile *t)
 {
     const int32_t isa = p->context->config.isa;
-    const float *k = r->value[0];
     const tyni_tile *ready = NULL;
     /* samples on each column or row of pixels, and one threshold for all */
     const int plain =
@@ -124,7 +123,7 @@ static void unwarp_sector(const tyni_pass *p, const tyni_run *r, const tyni_sect
     if (s->count < 2)
         return; /* no slices at all */
     TYNI_LANES_CALL(isa, pixel_places, (p, r, s, first, end));
-    if (s->along_y && TYNI_LANES_WIDE(isa) && cover(p, s, k[first], k[end - 1], r->y, t))
+    if (s->along_y && TYNI_LANES_WIDE(isa) && cover(p, s, r->value[0][first], r->value[0][end - 1], r->y, t))
         ready = t;
     for (int32_t i = first, next; i < end; i = next) {
         if (plain)
