@@ -1,5 +1,5 @@
-/* unwarp.h - visibility of a run's pixels from the lines beside each (findings: samples lie on columns or rows of pixels, so
- * that lines are read as they lie in memory). */
+/* unwarp.h - visibility of a run's pixels from the lines beside each. Samples lie on columns or rows of pixels, so that lines
+ * are read as they lie in memory. */
 #ifndef TYNI_UNWARP_H
 #define TYNI_UNWARP_H
 
