@@ -577,7 +577,7 @@ typedef struct tyn_stats {
     int64_t breaks;     /* discontinuities of depth between neighbouring samples */
     int64_t initial;    /* rays before refinement on light: at initial steps and breaks */
     int64_t rays;       /* rays integrated in all (march: per pixel; subsample: per grid point) */
-    int64_t walks;      /* of these, near the epipole: exact walks over the map's texels */
+    int64_t walks;      /* of these, near the epipole: exact, from texel to texel of the map */
     int64_t columns;    /* thresholds in the rows */
     int64_t looked;     /* nodes of the tree (or words, or columns, as config.rays is) that rays looked at */
     int64_t rejected;   /* pixels that no sample fits, computed by a ray of their own; with downscale, of the coarse picture */
