@@ -284,7 +284,7 @@ TYNI_SCALAR_OP uint32_t tyni_scalar_above16(const uint16_t *t, uint32_t position
 /* The lowest bit that is set; x != 0. */
 TYNI_SCALAR_OP int32_t tyni_scalar_ctz64(uint64_t x)
 {
-#if defined(__GNUC__) && !defined(TYN_PLAIN_C)
+#if defined(__GNUC__) && !defined(TYN_PLAIN_C) && __SIZEOF_LONG__ == 8 /* else the compiler's library may be asked */
     return __builtin_ctzll(x);
 #else
     return (uint32_t)x ? tyni_ctz32((uint32_t)x) : 32 + tyni_ctz32((uint32_t)(x >> 32));
