@@ -361,7 +361,7 @@ static void test_extremes(void)
     given *g = given_new(0);
     static picture out;
     tyn_light sun = *g->frame.lights;
-    tyn_stats stats;
+    tyn_stats stats = {0};
     int wrong = 0;
     TEST("quads: the brightest sun at the greatest exposure leaves light finite");
     for (int i = 0; i < PIXELS; i++)
