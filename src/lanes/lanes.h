@@ -55,15 +55,19 @@
  *     v_ipick(base, index)               32-bit words, likewise
  *     v_pick16(base, index)              the same of a table of 16, 0 <= index < 16
  *     v_igather(base, bytes)             32-bit words at base + bytes, at any address
- *     v_iload_apart(p, bytes)            32-bit words at p, p + bytes, p + 2 bytes ...: faster than v_igather where bytes is
- * known v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything v_store_rgb(p, r, g,
- * b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b) v_store_rgba8(p, r, g,
- * b, a)       4 v_n bytes out of the low 8 bits of v_ints; v_store_rgba8_n(p, r, g, b, a, n) v_above16(t, position) 32 bits
- * from 32 uint16_t: bit i is position < t[i]; position is 0 .. 65535 v_ones64(out, bits, base)          base + i for each of 64
- * bits that is set, in order, as uint16_t; returns how many. All of out[0 .. 63] may be written Over lanes: v_sum16(part) of
- * v_float part[16 / v_n], 16 partial sums, in one order on every ISA v_hmin(x) v_hmax(x)                no NaN; which zero of
- * two is open v_isum(x) v_dots8(a, b, n, out)              out[k], k < 4: sum of int16_t a[i] times int8_t b[k][i], i < n, that
- * must fit 32 bits; n of 16s
+ *     v_iload_apart(p, bytes)            32-bit words at p, p + bytes ...: faster than v_igather where bytes is a constant
+ *     v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything
+ *     v_store_rgb(p, r, g, b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b)
+ *     v_store_rgba8(p, r, g, b, a)       4 v_n bytes out of the low 8 bits of v_ints; v_store_rgba8_n(p, r, g, b, a, n)
+ *     v_above16(t, position)             32 bits from 32 uint16_t: bit i is position < t[i]; position is 0 .. 65535
+ *     v_ones64(out, bits, base)          base + i for each bit i of 64 that is set, in order, as uint16_t; returns how many.
+ *                                        All of out[0 .. 63] may be written
+ * Over lanes:
+ *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
+ *     v_hmin(x) v_hmax(x)                no NaN; which zero of two is open
+ *     v_isum(x)
+ *     v_dots8(a, b, n, out)              out[k], k < 4: sum of int16_t a[i] times int8_t b[k][i], i < n, that must fit 32 bits;
+ *                                        n of 16s
  */
 #ifndef TYNI_LANES_H
 #define TYNI_LANES_H
