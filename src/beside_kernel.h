@@ -1,9 +1,6 @@
 /* beside_kernel.h - a template, for unwarp.c: pixels that fit no sample at their place look for some beside it, as ED10's taps
  * do. */
 
-/* How many samples away. */
-#define BESIDE 4
-
 /* Of pixels first .. end - 1 of the run, all in one sector of the shear grid, those that fit no sample at their place: side by
  * side, as they are few and far apart. */
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector,
@@ -39,7 +36,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p,
             TYNI_UNROLL
             for (int32_t n = 0; n < 4; n++)
                 l.scale[n >> 1][n & 1] = v_gather(field->scales[n & 1] + (n >> 1), l.line);
-            for (int32_t away = 1; away <= BESIDE && v_any(open); away++) {
+            for (int32_t away = 1; away <= TYNI_GATHER_BESIDE && v_any(open); away++) {
                 TYNI_V(pixel_sum) s = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
                 float low[v_n], high[v_n];
                 v_mask fits;

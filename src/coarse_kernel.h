@@ -1,12 +1,5 @@
 /* coarse_kernel.h - a template: rays of a bundle from texel to texel, for ray.c. */
 
-/* Bits i .. i + v_n - 1 of a word as a mask. */
-TYNI_V_INLINE v_mask TYNI_V(ray_mask)(uint32_t word, int32_t i)
-{
-    static const int32_t bit[16] = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-    return v_igt(v_iand(v_iset((int32_t)(word >> i & 0xffffu)), v_iload(bit)), v_iset(0));
-}
-
 /* Of rays that `turn` at step coordinate `at`, those that differ from outside end to do so, and others begin. */
 TYNI_V_INLINE v_mask TYNI_V(ray_turn)(tyni_bundle *b, int flat, const float rate[2], int32_t i, v_mask turn, v_mask on,
                                       v_float at)
@@ -26,7 +19,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_set_out)(const tyni_bundle *b
     float first = 1e9f, last = -1.0f;
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
         const v_float from = v_load(b->from + i), until = v_load(b->until + i), zero = v_set(0.0f);
-        const v_mask here = v_mand(TYNI_V(ray_mask)(b->coarse, i), v_lt(from, until));
+        const v_mask here = v_mand(v_unword(b->coarse >> i), v_lt(from, until));
         const v_float t0 = TYNI_V(ray_t)(b, flat, i, from), t1 = TYNI_V(ray_t)(b, flat, i, until);
         v_float c, d, wc, wd, z;
         TYNI_V(ray_form)(b, i, view, &map->z, &c, &d);
@@ -81,7 +74,7 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_pass)(tyni_bundle *b, const t
         const v_float from = v_load(b->from + i), until = v_load(b->until + i), zero = v_set(0.0f);
         const v_float base = v_load(w->z + i), rise = v_load(w->rise + i);
         v_float at = v_load(w->at + i), z = v_max(base + rise * (at - from), zero);
-        v_mask on = TYNI_V(ray_mask)(w->on, i), turn;
+        v_mask on = v_unword(w->on >> i), turn;
         if (v_none(v_lt(at, until)))
             continue;
         for (int32_t e = 0; e < 2 * steps; e++) {

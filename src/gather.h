@@ -13,6 +13,9 @@
 /* Below this sum of weights the samples tell too little of the pixel. A sample one and a half thresholds off has a fifth. */
 #define TYNI_GATHER_ENOUGH 0.15f
 
+/* So many samples either way where none fits at a pixel's place, as ED10's taps look for them. */
+#define TYNI_GATHER_BESIDE 4
+
 /* Finished lines of one light. */
 typedef struct tyni_field {
     uint32_t *entries; /* entry.h; line after line, `pitch` apart */

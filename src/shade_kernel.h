@@ -28,9 +28,7 @@ TYNI_V_INLINE void TYNI_V(pixel_channels)(const tyni_medium *m, int32_t count, f
 /* Bits i .. i + v_n - 1, i a multiple of v_n, as a mask. */
 TYNI_V_INLINE v_mask TYNI_V(pixel_bits)(const uint32_t *words, int32_t i)
 {
-    static const int32_t bit[16] = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-    const v_int all = v_iset((int32_t)(words[i >> 5] >> (i & 31) & 0xffffu));
-    return v_igt(v_iand(all, v_iload(bit)), v_iset(0));
+    return v_unword(words[i >> 5] >> (i & 31));
 }
 
 /* What of the light that is scattered into rays from `from` to `to` arrives, per what is scattered a metre; and what is left of

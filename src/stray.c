@@ -10,9 +10,6 @@
 /* Pixels within this share an exponential: a 16th of an octave and more. */
 #define NEAR (1u << 19)
 
-/* Samples beside, as ED10's taps look for them: so many either way on both lines. */
-#define BESIDE 4
-
 /* How far apart, of what is displayed as 1, the bounds of a pixel's light may be before it has a ray of its own. */
 #define GAP 0.25f
 
@@ -160,7 +157,7 @@ int tyni_stray_about(const tyni_quads *q, int32_t n, float z, const tyni_knot *k
     }
     s.first = entry_from(q, bits - TYNI_QUADS_WINDOW);
     s.span = entry_from(q, bits + TYNI_QUADS_WINDOW) - s.first;
-    for (int32_t away = 0; away <= 2 * BESIDE; away++) {
+    for (int32_t away = 0; away <= 2 * TYNI_GATHER_BESIDE; away++) {
         const int32_t at = away & 1 ? (away + 1) / 2 : -away / 2;
         if ((uint32_t)(sample + at) >= (uint32_t)pitch)
             continue;

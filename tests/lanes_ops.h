@@ -299,6 +299,11 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
     }
 }
 
+static TYNI_V_TARGET uint32_t TYNI_V(test_unword)(uint32_t word)
+{
+    return v_word(v_unword(word)) ^ (word & ((1u << v_n) - 1u));
+}
+
 static TYNI_V_TARGET uint32_t TYNI_V(test_word)(const uint16_t *t, uint32_t position)
 {
     return v_above16(t, position);

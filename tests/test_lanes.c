@@ -205,6 +205,7 @@ static void test_words(int32_t isa)
             word |= (uint32_t)(position < t[i]) << i;
         }
         CHECK(TYNI_LANES_CALL(isa, test_word, (t, position)) == word);
+        CHECK(TYNI_LANES_CALL(isa, test_unword, (word)) == 0);
     }
 }
 

@@ -47,6 +47,12 @@ TYNI_V_INLINE int v_none(v_mask m)
     return v_word(m) == 0;
 }
 
+TYNI_V_INLINE v_mask v_unword(uint32_t word)
+{
+    static const int32_t bit[16] = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
+    return v_igt(v_iand(v_iset((int32_t)(word & 0xffffu)), v_iload(bit)), v_iset(0));
+}
+
 /* ---- parts of vectors ---- */
 
 TYNI_V_INLINE v_int v_load_u8_n(const uint8_t *p, int32_t n)

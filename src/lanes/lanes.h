@@ -42,6 +42,7 @@
  * Masks:
  *     v_mand v_mor v_mandnot(a, b) = a & ~b    v_first(n): lanes below n, any n
  *     v_word(m)                          bit i is lane i; v_any(m) v_all(m) v_none(m)
+ *     v_unword(word)                     lane i is bit i; bits from v_n on are anything
  * Memory, no alignment but that of the C type:
  *     v_load(p) v_store(p, x)            floats
  *     v_iload(p) v_istore(p, x)          32-bit words, at any address
@@ -154,6 +155,7 @@
 #define v_mor TYNI_V(mor)
 #define v_mandnot TYNI_V(mandnot)
 #define v_word TYNI_V(word)
+#define v_unword TYNI_V(unword)
 #define v_first TYNI_V(first)
 #define v_load TYNI_V(load)
 #define v_store TYNI_V(store)
