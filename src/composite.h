@@ -7,8 +7,9 @@
 
 #define TYNI_COLOUR_FORMATS (1u << TYN_RGB_F32 | 1u << TYN_RGBA8_SRGB | 1u << TYN_BGRA8_SRGB | 1u << TYN_RGB565_SRGB)
 
-/* sRGB decoding of a byte. */
-extern const float tyni_composite_srgb[256];
+/* sRGB decoding of a byte, in units of linear light: to a fortieth of a step of the byte, and 1 is 1. */
+#define TYNI_COMPOSITE_UNIT (1.0f / 62597.0f)
+extern const uint16_t tyni_composite_srgb[256];
 
 /* 256 times the encoded level, 0 .. 255, by 1023 times the root of a linear value. */
 extern const uint16_t tyni_composite_curve[1024];

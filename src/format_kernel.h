@@ -1,5 +1,15 @@
 /* format_kernel.h - a template: pixels of the formats in and out, for the kernels of composite.c and picture.c. */
 
+/* Linear values of three bytes of v_n pixels. */
+TYNI_V_INLINE void TYNI_V(format_decode)(const uint8_t *p, const int32_t byte[3], v_float rgb[3])
+{
+    v_int word[3];
+    v_rgb_words(tyni_composite_srgb, p, byte, word);
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        rgb[c] = v_to_float(word[c]) * TYNI_COMPOSITE_UNIT;
+}
+
 /* Up to v_n pixels from p on, n of them there. */
 TYNI_V_INLINE void TYNI_V(format_load)(tyn_format format, const uint8_t *p, int32_t n, v_float rgb[3])
 {
@@ -14,31 +24,31 @@ TYNI_V_INLINE void TYNI_V(format_load)(tyn_format format, const uint8_t *p, int3
     } else if (format == TYN_RGB565_SRGB) {
         const v_int v = v_load_u16((const uint16_t *)(const void *)p), five = v_iset(31);
         const v_int r5 = v_shr(v, 11), g6 = v_iand(v_shr(v, 5), v_iset(63)), b5 = v_iand(v, five);
-        rgb[0] = v_gather(tyni_composite_srgb, v_ior(v_shl(r5, 3), v_shr(r5, 2)));
-        rgb[1] = v_gather(tyni_composite_srgb, v_ior(v_shl(g6, 2), v_shr(g6, 4)));
-        rgb[2] = v_gather(tyni_composite_srgb, v_ior(v_shl(b5, 3), v_shr(b5, 2)));
+        const int32_t byte[3] = {0, 1, 2};
+        uint8_t bytes[4 * v_n];
+        v_store_rgba8(bytes, v_ior(v_shl(r5, 3), v_shr(r5, 2)), v_ior(v_shl(g6, 2), v_shr(g6, 4)),
+                      v_ior(v_shl(b5, 3), v_shr(b5, 2)), five);
+        TYNI_V(format_decode)(bytes, byte, rgb);
     } else {
-        const int32_t red = format == TYN_BGRA8_SRGB ? 2 : 0;
-        rgb[0] = v_gather_bytes(tyni_composite_srgb, p, red);
-        rgb[1] = v_gather_bytes(tyni_composite_srgb, p, 1);
-        rgb[2] = v_gather_bytes(tyni_composite_srgb, p, 2 - red);
+        const int32_t red = format == TYN_BGRA8_SRGB ? 2 : 0, byte[3] = {red, 1, 2 - red};
+        TYNI_V(format_decode)(p, byte, rgb);
     }
 }
 
-/* n vectors, at most TYNI_CHAINS, from 0 .. 1 linear to 0 .. 1 encoded (IEC 61966-2-1), within 2e-6: the mantissa's power is a
- * polynomial, the exponent's a table. They go term by term: each is one long chain, and one after the other they would be
+/* n vectors, at most TYNI_CHAINS, from 0 .. 1 linear to 0 .. 1 encoded (IEC 61966-2-1), within 1.1e-5: the mantissa's power is
+ * a polynomial, the exponent's a table. They go term by term: each is one long chain, and one after the other they would be
  * waited for. */
 TYNI_V_INLINE void TYNI_V(format_encode)(v_float *x, int32_t n)
 {
-    static const float term[4] = {0.202089757f, -0.482285205f, 0.946032156f, 0.378249163f};
+    static const float term[3] = {-0.318287253f, 0.828860164f, 0.411229342f};
     v_float m[TYNI_CHAINS], p[TYNI_CHAINS];
     TYNI_UNROLL_MORE
     for (int32_t c = 0; c < n; c++) {
         m[c] = v_from_bits(v_ior(v_iand(v_bits(x[c]), v_iset(0x7fffff)), v_iset(0x3f800000)));
-        p[c] = 0.0051434881f * m[c] - 0.0492275911f;
+        p[c] = 0.0890376940f - 0.0108295474f * m[c];
     }
     TYNI_UNROLL
-    for (int32_t i = 0; i < 4; i++) {
+    for (int32_t i = 0; i < 3; i++) {
         const v_float more = v_set(term[i]);
         TYNI_UNROLL_MORE
         for (int32_t c = 0; c < n; c++)

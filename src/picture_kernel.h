@@ -54,6 +54,7 @@ TYNI_V_INLINE void TYNI_V(picture_encode)(const tyni_picture *q, const int32_t x
  * what they hand on by planes stays in registers here. */
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const tyni_run *r, const tyni_picture *q)
 {
+    const int32_t byte[3] = {q->from_byte[0], q->from_byte[1], q->from_byte[2]};
     for (int32_t i = 0; i < r->count && v_n > 1; i += VECTORS * v_n) { /* one lane has too few registers to gain */
         uint8_t part[VECTORS][4 * v_n];
         v_float to[VECTORS], cosine[VECTORS], mix[CHAINS], rgb[CHAINS], left[CHAINS], lost[CHAINS];
@@ -83,13 +84,13 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const tyni_run *r,
         TYNI_UNROLL
         for (int32_t k = 0; k < VECTORS; k++) {
             const uint8_t *from = q->from + 4 * (ptrdiff_t)at[k];
+            v_float surface[3];
             if (r->count - at[k] < v_n)
                 from = memcpy(memset(part[k], 0, sizeof part[k]), from, 4 * (size_t)(r->count - at[k]));
+            TYNI_V(format_decode)(from, byte, surface);
             TYNI_UNROLL
-            for (int32_t c = 0; c < 3; c++) {
-                const v_float surface = v_gather_bytes(tyni_composite_srgb, from, q->from_byte[c]);
-                rgb[3 * k + c] = (left[3 * k + c] * surface + rgb[3 * k + c]) * q->exposure;
-            }
+            for (int32_t c = 0; c < 3; c++)
+                rgb[3 * k + c] = (left[3 * k + c] * surface[c] + rgb[3 * k + c]) * q->exposure;
         }
         TYNI_V(picture_encode)(q, x, rgb, out);
         TYNI_UNROLL

@@ -96,7 +96,7 @@ void tyni_quad_begin(const tyni_pass *p)
         fade = (void *)s.bundle;
         decode = (void *)s.row;
         for (int32_t i = 0; i < 256; i++)
-            decode[i] = q.gain * tyni_composite_srgb[i];
+            decode[i] = q.gain * ((float)tyni_composite_srgb[i] * TYNI_COMPOSITE_UNIT);
         for (int32_t i = 0; i < TYNI_QUADS_FADES; i++)
             for (int32_t c = 0; c < 3; c++)
                 fade[i][c] = fade_of(-q.falls[c] * tyni_bits_float((uint32_t)(q.base + i) << TYNI_QUADS_FADE_BITS));

@@ -176,15 +176,15 @@ static TYNI_V_TARGET void TYNI_V(test_memory)(uint8_t *at, int32_t n)
 /* Whole vectors, in place, and what goes over lanes. */
 static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
 {
-    float table[64], all[256], f[4 * 16], rgb[3 * 16 + 8];
+    float table[64], f[4 * 16], rgb[3 * 16 + 8];
     int32_t k[16];
     uint8_t bytes[4 * 16 + 8];
-    uint16_t words[16 + 2];
+    uint16_t words[256];
     v_float r, g, b, part[16 / v_n];
     v_mask m = v_lt(v_load(a), v_load(a + 16));
     memcpy(table, a, sizeof table);
     for (int32_t i = 0; i < 256; i++)
-        all[i] = (float)i * 0.37f;
+        words[i] = (uint16_t)(i * 257 ^ i << 5);
     for (int32_t i = 0; i < v_n; i++)
         k[i] = (int32_t)(test_random() % 64);
     v_store(f, v_gather(table, v_iload(k)));
@@ -205,12 +205,17 @@ static TYNI_V_TARGET void TYNI_V(test_whole)(const float *a, const int32_t *ia)
     v_store(f, v_from_bits(v_ipick(table + 5, v_iload(k))));
     for (int32_t i = 0; i < v_n; i++)
         CHECK(memcmp(&f[i], &table[5 + k[i]], 4) == 0);
-    for (int32_t byte = 0; byte < 4; byte++) {
+    for (int32_t n = 0; n < 8; n++) {
+        const int32_t byte[3] = {(int32_t)(test_random() & 3u), (int32_t)(test_random() & 3u), (int32_t)(test_random() & 3u)};
+        v_int three[3];
         for (int32_t i = 0; i < 4 * v_n; i++)
             bytes[i] = (uint8_t)test_random();
-        v_store(f, v_gather_bytes(all, bytes, byte));
-        for (int32_t i = 0; i < v_n; i++)
-            CHECK(memcmp(&f[i], &all[bytes[4 * i + byte]], 4) == 0);
+        v_rgb_words(words, bytes, byte, three);
+        for (int32_t c = 0; c < 3; c++) {
+            v_istore(k, three[c]);
+            for (int32_t i = 0; i < v_n; i++)
+                CHECK(k[i] == words[bytes[4 * i + byte[c]]]);
+        }
     }
     for (int32_t i = 0; i < v_n; i++)
         k[i] = (int32_t)(test_random() % 253) - 128;

@@ -272,11 +272,23 @@ TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 {
     return _mm256_castsi256_ps(tyni_avx2_igather(base, _mm256_slli_epi32(index, 2)));
 }
-TYNI_AVX2_OP __m256 tyni_avx2_gather_bytes(const float *base, const uint8_t *p, int32_t k)
+TYNI_AVX2_OP __m256i tyni_avx2_words_of(const uint16_t *table, const uint8_t *p)
 {
-    const __m128 low = _mm_setr_ps(base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]);
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(low),
-                                _mm_setr_ps(base[p[16 + k]], base[p[20 + k]], base[p[24 + k]], base[p[28 + k]]), 1);
+    __m128i x = _mm_cvtsi32_si128(table[p[0]]);
+    x = _mm_insert_epi16(x, table[p[4]], 1);
+    x = _mm_insert_epi16(x, table[p[8]], 2);
+    x = _mm_insert_epi16(x, table[p[12]], 3);
+    x = _mm_insert_epi16(x, table[p[16]], 4);
+    x = _mm_insert_epi16(x, table[p[20]], 5);
+    x = _mm_insert_epi16(x, table[p[24]], 6);
+    x = _mm_insert_epi16(x, table[p[28]], 7);
+    return _mm256_cvtepu16_epi32(x);
+}
+TYNI_AVX2_OP void tyni_avx2_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], __m256i out[3])
+{
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        out[c] = tyni_avx2_words_of(table, p + byte[c]);
 }
 TYNI_AVX2_OP __m256i tyni_avx2_igather_where(const void *base, __m256i bytes, __m256i m)
 {

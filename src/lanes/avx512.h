@@ -260,22 +260,30 @@ TYNI_AVX512_OP __m512i tyni_avx512_iload_apart(const void *p, int32_t bytes)
     high = _mm256_inserti128_si256(high, tyni_avx512_four(base + 12 * bytes, at), 1);
     return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
-/* 32 entries a shuffle, and of eight such the right one by the index's three upper bits: a third of what 16 loads cost. */
-TYNI_AVX512_OP __m512 tyni_avx512_pick32(const float *base, __m512i index)
+/* 64 entries a shuffle, and of four such the right one by the index's two upper bits. Index: the low byte of each word. */
+TYNI_AVX512_OP __m512i tyni_avx512_words32(const uint16_t *table, __m512i index)
 {
-    return _mm512_permutex2var_ps(_mm512_loadu_ps(base), index, _mm512_loadu_ps(base + 16));
+    const __mmask32 m64 = _mm512_test_epi16_mask(index, _mm512_set1_epi16(64));
+    const __mmask32 m128 = _mm512_test_epi16_mask(index, _mm512_set1_epi16(128));
+    __m512i part[4];
+    TYNI_UNROLL
+    for (int32_t i = 0; i < 4; i++)
+        part[i] = _mm512_permutex2var_epi16(_mm512_loadu_si512(table + 64 * i), index, _mm512_loadu_si512(table + 64 * i + 32));
+    part[0] = _mm512_mask_blend_epi16(m64, part[0], part[1]);
+    part[2] = _mm512_mask_blend_epi16(m64, part[2], part[3]);
+    return _mm512_mask_blend_epi16(m128, part[0], part[2]);
 }
-TYNI_AVX512_OP __m512 tyni_avx512_gather_bytes(const float *base, const uint8_t *p, int32_t k)
+/* The bytes in order are low and high halves of words: so there are two channels at a time, for a fifth of what loads cost. */
+TYNI_AVX512_OP void tyni_avx512_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], __m512i out[3])
 {
-    const __m512i index = _mm512_srl_epi32(_mm512_loadu_si512(p), _mm_cvtsi32_si128(8 * k));
-    const __mmask16 m32 = _mm512_test_epi32_mask(index, _mm512_set1_epi32(32));
-    const __mmask16 m64 = _mm512_test_epi32_mask(index, _mm512_set1_epi32(64));
-    const __mmask16 m128 = _mm512_test_epi32_mask(index, _mm512_set1_epi32(128));
-    const __m512 a = _mm512_mask_blend_ps(m32, tyni_avx512_pick32(base, index), tyni_avx512_pick32(base + 32, index));
-    const __m512 b = _mm512_mask_blend_ps(m32, tyni_avx512_pick32(base + 64, index), tyni_avx512_pick32(base + 96, index));
-    const __m512 c = _mm512_mask_blend_ps(m32, tyni_avx512_pick32(base + 128, index), tyni_avx512_pick32(base + 160, index));
-    const __m512 d = _mm512_mask_blend_ps(m32, tyni_avx512_pick32(base + 192, index), tyni_avx512_pick32(base + 224, index));
-    return _mm512_mask_blend_ps(m128, _mm512_mask_blend_ps(m64, a, b), _mm512_mask_blend_ps(m64, c, d));
+    const __m512i order = _mm512_set1_epi32((int32_t)0x80000000u | byte[0] | byte[1] << 16 | byte[2] << 8);
+    const __m512i pixel = _mm512_setr_epi32(0, 0x00040404, 0x00080808, 0x000c0c0c, 0, 0x00040404, 0x00080808, 0x000c0c0c, 0,
+                                            0x00040404, 0x00080808, 0x000c0c0c, 0, 0x00040404, 0x00080808, 0x000c0c0c);
+    const __m512i bytes = _mm512_shuffle_epi8(_mm512_loadu_si512(p), _mm512_or_si512(order, pixel));
+    const __m512i two = tyni_avx512_words32(table, bytes), third = tyni_avx512_words32(table, _mm512_srli_epi16(bytes, 8));
+    out[0] = _mm512_and_si512(two, _mm512_set1_epi32(65535));
+    out[1] = _mm512_srli_epi32(two, 16);
+    out[2] = _mm512_and_si512(third, _mm512_set1_epi32(65535));
 }
 TYNI_AVX512_OP __m512 tyni_avx512_gather(const float *base, __m512i index)
 {

@@ -50,8 +50,8 @@
  *     ..._n(p, n), ..._n(p, x, n)        the first n lanes alone, any n: others load as 0, their memory is not touched
  *     v_store_where v_istore_where(p, m, x)    where m; elsewhere the old values may be written back: all must be writable
  *     v_gather(base, index)              floats base[index]; all lanes are read
- *     v_gather_bytes(base, p, k)         floats base[p[k]], base[p[4 + k]] ...: what byte k, 0 .. 3, of each of v_n four-byte
- *                                        pixels stands for. All 256 of base may be read
+ *     v_rgb_words(table, p, byte, out)   out[c], c < 3: uint16_t table[p[byte[c]]], table[p[4 + byte[c]]] ...: what three
+ *                                        bytes, 0 .. 3, of four-byte pixels stand for. All 256 of table may be read
  *     v_pick(base, index)                floats base[index], 0 <= index < v_n; all of base[0 .. v_n - 1] may be read
  *     v_ipick(base, index)               32-bit words, likewise
  *     v_pick16(base, index)              the same of a table of 16, 0 <= index < 16
@@ -173,7 +173,7 @@
 #define v_store_u8 TYNI_V(store_u8)
 #define v_store_u16 TYNI_V(store_u16)
 #define v_gather TYNI_V(gather)
-#define v_gather_bytes TYNI_V(gather_bytes)
+#define v_rgb_words TYNI_V(rgb_words)
 #define v_pick TYNI_V(pick)
 #define v_ipick TYNI_V(ipick)
 #define v_pick16 TYNI_V(pick16)

@@ -265,10 +265,19 @@ TYNI_NEON_OP float32x4_t tyni_neon_gather(const float *base, int32x4_t index)
         x[i] = base[at[i]];
     return vld1q_f32(x);
 }
-TYNI_NEON_OP float32x4_t tyni_neon_gather_bytes(const float *base, const uint8_t *p, int32_t k)
+TYNI_NEON_OP int32x4_t tyni_neon_words_of(const uint16_t *table, const uint8_t *p)
 {
-    const float x[4] = {base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]};
-    return tyni_neon_load(x);
+    uint16x4_t x = vld1_dup_u16(table + p[0]);
+    x = vld1_lane_u16(table + p[4], x, 1);
+    x = vld1_lane_u16(table + p[8], x, 2);
+    x = vld1_lane_u16(table + p[12], x, 3);
+    return vreinterpretq_s32_u32(vmovl_u16(x));
+}
+TYNI_NEON_OP void tyni_neon_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], int32x4_t out[3])
+{
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        out[c] = tyni_neon_words_of(table, p + byte[c]);
 }
 TYNI_NEON_OP float32x4_t tyni_neon_pick(const float *base, int32x4_t index)
 {

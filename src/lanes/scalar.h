@@ -232,9 +232,15 @@ TYNI_SCALAR_OP float tyni_scalar_gather(const float *base, int32_t index)
 {
     return base[index];
 }
-TYNI_SCALAR_OP float tyni_scalar_gather_bytes(const float *base, const uint8_t *p, int32_t k)
+TYNI_SCALAR_OP int32_t tyni_scalar_words_of(const uint16_t *table, const uint8_t *p)
 {
-    return base[p[k]];
+    return table[*p];
+}
+TYNI_SCALAR_OP void tyni_scalar_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], int32_t out[3])
+{
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        out[c] = tyni_scalar_words_of(table, p + byte[c]);
 }
 TYNI_SCALAR_OP float tyni_scalar_pick(const float *base, int32_t index)
 {

@@ -268,9 +268,18 @@ TYNI_SSE2_OP __m128 tyni_sse2_gather(const float *base, __m128i index)
     tyni_sse2_istore(at, index);
     return _mm_setr_ps(base[at[0]], base[at[1]], base[at[2]], base[at[3]]);
 }
-TYNI_SSE2_OP __m128 tyni_sse2_gather_bytes(const float *base, const uint8_t *p, int32_t k)
+TYNI_SSE2_OP __m128i tyni_sse2_words_of(const uint16_t *table, const uint8_t *p)
 {
-    return _mm_setr_ps(base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]);
+    __m128i x = _mm_cvtsi32_si128(table[p[0]]);
+    x = _mm_insert_epi16(x, table[p[4]], 2);
+    x = _mm_insert_epi16(x, table[p[8]], 4);
+    return _mm_insert_epi16(x, table[p[12]], 6);
+}
+TYNI_SSE2_OP void tyni_sse2_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], __m128i out[3])
+{
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        out[c] = tyni_sse2_words_of(table, p + byte[c]);
 }
 TYNI_SSE2_OP __m128 tyni_sse2_pick(const float *base, __m128i index)
 {

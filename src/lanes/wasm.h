@@ -258,10 +258,15 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather(const float *base, v128_t index)
         x[i] = base[at[i]];
     return tyni_wasm_load(x);
 }
-TYNI_WASM_OP tyni_wasm_float tyni_wasm_gather_bytes(const float *base, const uint8_t *p, int32_t k)
+TYNI_WASM_OP v128_t tyni_wasm_words_of(const uint16_t *table, const uint8_t *p)
 {
-    const float x[4] = {base[p[k]], base[p[4 + k]], base[p[8 + k]], base[p[12 + k]]};
-    return tyni_wasm_load(x);
+    return wasm_i32x4_make(table[p[0]], table[p[4]], table[p[8]], table[p[12]]);
+}
+TYNI_WASM_OP void tyni_wasm_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], v128_t out[3])
+{
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 3; c++)
+        out[c] = tyni_wasm_words_of(table, p + byte[c]);
 }
 TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick(const float *base, v128_t index)
 {
