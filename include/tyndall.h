@@ -551,10 +551,10 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYNI_MILL(bases, sets) (4 * ((size_t)(sets) * ((size_t)(bases) + 3) + (size_t)(bases) + 520))
 #define TYN_SHELF_BYTES 192
 #define TYNI_POINTS(pixels, factor) (((size_t)(pixels)-1 + (size_t)(factor)-1) / (size_t)(factor) + 1)
-#define TYN_CONTEXT_BYTES 2752
+#define TYN_CONTEXT_BYTES 2688
 #define TYN_STATS_BYTES 256
-#define TYN_ROW_BYTES 1216
-#define TYN_BUNDLE_BYTES 2048
+#define TYN_ROW_BYTES 1152
+#define TYN_BUNDLE_BYTES 2176
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_RUN(samples) ((size_t)((samples) < 1024 ? ((samples) + 1) / 2 : 512))
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))

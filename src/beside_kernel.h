@@ -8,17 +8,18 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p,
 {
     const tyni_field *field = &p->lines;
     const int32_t most = field->pitch - 1, last = sector->count - 2;
-    uint16_t list[64];
+    uint16_t list[32 + 16];
     for (int32_t base = first & ~31; base < end; base += 32) {
         uint32_t bits = r->rejected[base >> 5];
-        int32_t count;
+        int32_t count = 0;
         if (base < first)
             bits &= 0xffffffffu << (first - base);
         if (end - base < 32)
             bits &= (1u << (end - base)) - 1u;
         if (!bits)
             continue;
-        count = v_ones64(list, bits, base);
+        for (; bits; bits &= bits - 1)
+            list[count++] = (uint16_t)(base + tyni_ctz32(bits));
         for (int32_t j = 0; j < count; j += v_n) {
             /* lanes behind the last pixel are the first */
             const v_int i = v_iselect(v_first(count - j), v_load_u16(list + j), v_iset(list[0]));

@@ -116,7 +116,7 @@ static TYNI_NOINLINE void draw_rays(const tyni_pass *p, chart *c, const tyni_sli
     tyni_integral_begin(&it, &p->medium, p->lamp, &v, t0, t1, channels, 1);
     for (int32_t i = 0; i < s->row->count; i++) {
         const tyni_piece *piece = &s->row->pieces[i];
-        if (!tyni_ray_columns(piece, &it, &v, &first, &last, &from, &to))
+        if (!tyni_ray_columns(s->row, piece, &it, &v, &first, &last, &from, &to))
             continue;
         first += piece->first;
         last += piece->first;

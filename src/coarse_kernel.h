@@ -12,8 +12,9 @@ TYNI_V_INLINE v_mask TYNI_V(ray_turn)(tyni_bundle *b, int flat, const float rate
 }
 
 /* Where coarse rays come into a piece, and their map depth along it. */
-static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_set_out)(const tyni_bundle *b, const tyni_view *view,
-                                                            const tyni_piece *piece, const tyni_map *map, paces *w)
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_set_out)(const tyni_bundle *b, const tyni_slice *slice,
+                                                            const tyni_view *view, const tyni_piece *piece, const tyni_map *map,
+                                                            paces *w)
 {
     const int flat = is_flat(piece);
     float first = 1e9f, last = -1.0f;
@@ -21,9 +22,10 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(ray_set_out)(const tyni_bundle *b
         const v_float from = v_load(b->from + i), until = v_load(b->until + i), zero = v_set(0.0f);
         const v_mask here = v_mand(v_unword(b->coarse >> i), v_lt(from, until));
         const v_float t0 = TYNI_V(ray_t)(b, flat, i, from), t1 = TYNI_V(ray_t)(b, flat, i, until);
-        v_float c, d, wc, wd, z;
-        TYNI_V(ray_form)(b, i, view, &map->z, &c, &d);
-        TYNI_V(ray_form)(b, i, view, &map->w, &wc, &wd);
+        v_float v[3], c, d, wc, wd, z;
+        TYNI_V(ray_way)(b, i, slice, view, v);
+        TYNI_V(ray_form)(v, view, &map->z, &c, &d);
+        TYNI_V(ray_form)(v, view, &map->w, &wc, &wd);
         z = (c + t0 * d) / (wc + t0 * wd);
         v_store(w->z + i, z);
         v_store(w->rise + i, v_select(here, ((c + t1 * d) / (wc + t1 * wd) - z) / (until - from), zero));

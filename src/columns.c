@@ -45,8 +45,8 @@ void tyni_columns_begin(tyni_columns *c, const tyni_row *row, const tyni_slice *
 static void piece_begin(tyni_columns *c, const tyni_piece *p)
 {
     int32_t a = tyni_clampi((int32_t)p->from, 0, p->steps - 1), b = tyni_clampi(tyni_ceili(p->to) - 1, a, p->steps - 1);
-    c->k = 2 * a + (p->from - (float)a >= p->split[a]);
-    c->last = 2 * b + (p->to - (float)b > p->split[b]);
+    c->k = 2 * a + (p->from >= tyni_row_edge(c->row, p, 2 * a + 1));
+    c->last = 2 * b + (p->to > tyni_row_edge(c->row, p, 2 * b + 1));
 }
 
 int tyni_columns_next(tyni_columns *c, float *from, float *to, uint32_t *threshold)
@@ -70,7 +70,7 @@ int tyni_columns_next(tyni_columns *c, float *from, float *to, uint32_t *thresho
             *threshold = column[c->k];
             while (c->k < c->last && column[c->k + 1] == *threshold)
                 c->k++;
-            x = c->k < c->last ? column_of(c, i, tyni_row_edge(p, c->k + 1)) : c->piece[i].end;
+            x = c->k < c->last ? column_of(c, i, tyni_row_edge(c->row, p, c->k + 1)) : c->piece[i].end;
             c->k++;
         }
         if (!(x > c->x)) /* no gap, or an empty half of a step */

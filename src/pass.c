@@ -19,12 +19,12 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
     size_t samples = (size_t)c->samples, points = (size_t)c->points, words = (size_t)tyni_sample_words(c->samples);
-    size_t steps = tyni_row_room(c->config.shadow_size, c->config.maps), columns = 2 * steps;
+    size_t columns = 2 * tyni_row_room(c->config.shadow_size, c->config.maps);
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
     memset(s, 0, sizeof *s);
     s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
     s->threshold = tyni_arena_take(&arena, columns, sizeof *s->threshold);
-    s->split = tyni_arena_take(&arena, steps, sizeof *s->split);
+    s->edge = tyni_arena_take(&arena, columns, sizeof *s->edge);
     s->blocks.low = tyni_arena_take(&arena, tyni_row_blocks(columns), 2 * sizeof *s->blocks.low);
     s->blocks.high = s->blocks.low ? s->blocks.low + tyni_row_blocks(columns) : NULL;
     s->depth = tyni_arena_take(&arena, points, sizeof *s->depth);

@@ -24,8 +24,7 @@
 /* What one worker needs for one slice, or for a run of pixels: small enough for its caches. */
 typedef struct tyni_scratch {
     tyni_row *row;
-    uint16_t *threshold;             /* 2 * tyni_row_room */
-    float *split;                    /* tyni_row_room */
+    uint16_t *threshold, *edge;      /* 2 * tyni_row_room */
     tyni_blocks blocks;              /* of the thresholds */
     float *depth;                    /* points */
     float *value[3];                 /* points: visibility */

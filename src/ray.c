@@ -8,9 +8,6 @@
 
 /* ---- where a ray goes into the light and out of it ------------------------------------------------------------------ */
 
-/* Columns in hand: a piece has two a step, TYN_MAX_SHADOW steps and a few. */
-typedef char columns_fit[2 * (TYN_MAX_SHADOW + 4) <= 65535 ? 1 : -1];
-
 /* A ray in one piece of the row, and how far the search has come. */
 typedef struct crossing {
     const tyni_piece *piece;
@@ -18,7 +15,7 @@ typedef struct crossing {
     uint32_t position;
     int outside; /* lit before the first column and behind the last */
     int32_t looked;
-    uint16_t *edges; /* for the columns at which it changes: TYNI_RAY_EDGES and TYNI_RAY_SPARE */
+    uint16_t *edges; /* where it changes, as the row has it: TYNI_RAY_EDGES and TYNI_RAY_SPARE */
 } crossing;
 
 /* An orthographic map: w is 1 everywhere. */
@@ -31,11 +28,11 @@ static int is_flat(const tyni_piece *piece)
 static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
                             int outside, uint16_t *edges)
 {
-    const uint16_t *threshold = finder->row->threshold;
+    const uint16_t *threshold = finder->row->threshold, *edge = finder->row->edge;
     const int32_t last = first + end;
     int32_t i = first + *next, n = (position < threshold[i]) != outside;
     int lit = position < threshold[i];
-    edges[0] = (uint16_t)*next;
+    edges[0] = edge[i];
     for (i++; i <= last;) {
         const int32_t w = i >> 6, behind = tyni_mini(64 * w + 64, last + 1);
         if (position < finder->blocks->low[w] || position >= finder->blocks->high[w])
@@ -54,7 +51,7 @@ static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *n
             if (i == behind)
                 break;
             lit = !lit;
-            edges[n++] = (uint16_t)(i - first);
+            edges[n++] = edge[i];
             if (n == TYNI_RAY_EDGES) {
                 *next = i - first + 1;
                 return n;
@@ -63,6 +60,13 @@ static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *n
     }
     *next = end + 1;
     return n;
+}
+
+/* Of the bits that are set. */
+static int32_t highest(uint64_t bits)
+{
+    const uint32_t high = (uint32_t)(bits >> 32);
+    return high ? 63 - tyni_clz32(high) : 31 - tyni_clz32((uint32_t)bits);
 }
 
 /* Steps whose texels coarse rays cross together. */
@@ -82,23 +86,23 @@ typedef struct paces {
 #include "lanes/each.h"
 
 /* The columns that a ray crosses from step coordinate `from` to `to`. */
-static void columns_of(const tyni_piece *piece, float from, float to, int32_t *first, int32_t *last)
+static void columns_of(const tyni_row *row, const tyni_piece *piece, float from, float to, int32_t *first, int32_t *last)
 {
     int32_t a = tyni_clampi((int32_t)from, 0, piece->steps - 1), b = tyni_clampi(tyni_ceili(to) - 1, a, piece->steps - 1);
-    *first = 2 * a + (from - (float)a >= piece->split[a]);
-    *last = 2 * b + (to - (float)b > piece->split[b]);
+    *first = 2 * a + (from >= tyni_row_edge(row, piece, 2 * a + 1));
+    *last = 2 * b + (to > tyni_row_edge(row, piece, 2 * b + 1));
 }
 
 /* IVB's march without its tree. */
 static int32_t each_column(crossing *c, const tyni_finder *finder)
 {
-    const uint16_t *threshold = finder->row->threshold + c->piece->first;
+    const uint16_t *threshold = finder->row->threshold + c->piece->first, *edge = finder->row->edge + c->piece->first;
     int32_t n = 0, i = c->next;
     int lit = c->outside;
     for (; i <= c->last && n < TYNI_RAY_EDGES; i++)
         if ((c->position < threshold[i]) != lit) {
             lit = !lit;
-            c->edges[n++] = (uint16_t)i;
+            c->edges[n++] = edge[i];
         }
     c->looked += i - c->next;
     c->next = i;
@@ -116,7 +120,7 @@ static int32_t descend(crossing *c, const tyni_finder *finder)
         c->looked += tyni_tree_span(finder->tree, finder->row->threshold, c->position, i, &level, &top, &now);
         if (now != lit) {
             lit = now;
-            c->edges[n++] = (uint16_t)c->next;
+            c->edges[n++] = finder->row->edge[i];
         }
         c->next += 1 << level;
     }
@@ -126,6 +130,7 @@ static int32_t descend(crossing *c, const tyni_finder *finder)
 /* 32 columns at a time, by the words that the sweep keeps. */
 static int32_t swept_words(crossing *c, const tyni_finder *finder)
 {
+    const uint16_t *edge = finder->row->edge + c->piece->first;
     int32_t n = 0;
     uint32_t lit = (uint32_t)c->outside;
     while (c->next <= c->last && n < TYNI_RAY_EDGES) {
@@ -134,7 +139,7 @@ static int32_t swept_words(crossing *c, const tyni_finder *finder)
         if (left < 32)
             changes &= (1u << left) - 1u;
         for (; changes && n < TYNI_RAY_EDGES; changes &= changes - 1)
-            c->edges[n++] = (uint16_t)(c->next + tyni_ctz32(changes));
+            c->edges[n++] = edge[c->next + tyni_ctz32(changes)];
         lit = bits >> 31;
         c->next += changes ? tyni_ctz32(changes) : tyni_mini(left, 32);
         c->looked++;
@@ -142,8 +147,8 @@ static int32_t swept_words(crossing *c, const tyni_finder *finder)
     return n;
 }
 
-/* The next columns at which the ray changes, an even number: TYNI_RAY_EDGES, or all that are left and the end of the last
- * column where that is a change too; then c->next is behind c->last. */
+/* The next edges at which the ray changes, an even number: TYNI_RAY_EDGES, or all that are left and the end of the last column
+ * where that is a change too; then c->next is behind c->last. */
 static int32_t find(crossing *c, const tyni_finder *finder)
 {
     int32_t n;
@@ -156,7 +161,7 @@ static int32_t find(crossing *c, const tyni_finder *finder)
     else
         n = TYNI_LANES_CALL(finder->isa, ray_words, (c, finder));
     if (n & 1)
-        c->edges[n++] = (uint16_t)(c->last + 1);
+        c->edges[n++] = TYNI_ROW_END;
     return n;
 }
 
@@ -199,7 +204,7 @@ int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, 
         int lit = m.outside;
         if (!row_span(piece, r, w, it, &from, &to))
             continue;
-        columns_of(piece, from, to, &first, &c.last);
+        columns_of(row, piece, from, to, &first, &c.last);
         from = tyni_maxf(from, 0.0f);
         to = tyni_minf(to, (float)piece->steps);
         c.piece = piece;
@@ -208,7 +213,7 @@ int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, 
             int32_t n = find(&c, finder);
             for (int32_t k = 0; k < n; k++) {
                 /* the first column begins before the ray comes in, the last one ends behind its end; all others are between */
-                float at = tyni_clampf(tyni_row_edge(piece, edges[k]), from, to);
+                float at = tyni_clampf((float)edges[k] * piece->unit, from, to);
                 lit = !lit;
                 tyni_meter_lit(&m, lit, (at * w.c - r.c) / (r.d - at * w.d));
             }
@@ -219,12 +224,12 @@ int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, 
     return c.looked;
 }
 
-int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *it, const tyni_sight *v, int32_t *first, int32_t *last,
-                     float *from, float *to)
+int tyni_ray_columns(const tyni_row *row, const tyni_piece *piece, const tyni_integral *it, const tyni_sight *v, int32_t *first,
+                     int32_t *last, float *from, float *to)
 {
     if (!row_span(piece, tyni_line_along(&piece->r, v), tyni_line_along(&piece->w, v), it, from, to))
         return 0;
-    columns_of(piece, *from, *to, first, last);
+    columns_of(row, piece, *from, *to, first, last);
     return 1;
 }
 
@@ -261,10 +266,10 @@ static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piec
             tyni_sweep_to(finder->sweep, b->sample[n]);
         c.next = b->next[n];
         c.last = b->last[n];
-        c.position = (uint32_t)b->position[n];
+        c.position = b->position[n];
         c.edges = b->edge + n * TYNI_RAY_EDGES;
         b->edges[n] = (uint16_t)find(&c, finder);
-        b->next[n] = c.next;
+        b->next[n] = (uint16_t)c.next;
         left |= c.next <= c.last;
     }
     *looked += c.looked;
@@ -272,12 +277,12 @@ static int fill_edges(tyni_bundle *b, const tyni_finder *finder, const tyni_piec
 }
 
 /* The coarse rays of a bundle, from texel to texel: all of a slice's rays go along the same ones. */
-static TYNI_NOINLINE void walk(tyni_bundle *b, int32_t isa, const tyni_view *view, const tyni_piece *piece,
-                               const tyni_lamp *lamp, const float sigma[2])
+static TYNI_NOINLINE void walk(tyni_bundle *b, int32_t isa, const tyni_slice *slice, const tyni_view *view,
+                               const tyni_piece *piece, const tyni_lamp *lamp, const float sigma[2])
 {
     const tyni_map *map = &lamp->maps[piece->map];
     paces w;
-    TYNI_LANES_CALL(isa, ray_set_out, (b, view, piece, map, &w));
+    TYNI_LANES_CALL(isa, ray_set_out, (b, slice, view, piece, map, &w));
     for (int32_t k = w.first; k <= w.last; k += PACES)
         TYNI_LANES_CALL(isa, ray_pass, (b, piece, &map->texels, k, lamp->outside, sigma, &w));
 }
@@ -294,15 +299,15 @@ int32_t tyni_ray_bundle(tyni_bundle *b, const tyni_finder *finder, const tyni_sl
         b->edges[n] = 0;
     }
     TYNI_LANES_CALL(isa, ray_begin, (b, slice, view, row, depth, most));
-    for (int32_t i = 0; i < row->count; i++)
-        TYNI_LANES_CALL(isa, ray_spans, (b, view, &row->pieces[i], 1));
+    for (int32_t i = 1; i < row->count; i++)
+        TYNI_LANES_CALL(isa, ray_spans, (b, slice, view, &row->pieces[i], 1));
     for (int32_t i = 0; i < row->count; i++) {
         const tyni_piece *piece = &row->pieces[i];
         if (row->count > 1)
-            TYNI_LANES_CALL(isa, ray_spans, (b, view, piece, 0));
-        TYNI_LANES_CALL(isa, ray_enter, (b, piece, sigma[1], finder->coarse));
+            TYNI_LANES_CALL(isa, ray_spans, (b, slice, view, piece, 0));
+        TYNI_LANES_CALL(isa, ray_enter, (b, row, piece, sigma[1], finder->coarse));
         if (b->coarse)
-            walk(b, isa, view, piece, lamp, sigma);
+            walk(b, isa, slice, view, piece, lamp, sigma);
         do {
             if (finder->rays == TYN_RAYS_WORDS)
                 left = TYNI_LANES_CALL(isa, ray_fill, (b, finder, piece, outside, &looked));

@@ -39,32 +39,32 @@ int32_t tyni_ray_row(const tyni_finder *finder, float p, const tyni_lamp *lamp, 
 int tyni_ray_coarse(const tyni_finder *finder, const tyni_integral *integral, const tyni_sight *v);
 
 /* The columns first .. last of a piece that a ray crosses, and where it enters and leaves in step coordinates; 0 if none. */
-int tyni_ray_columns(const tyni_piece *piece, const tyni_integral *integral, const tyni_sight *v, int32_t *first, int32_t *last,
-                     float *from, float *to);
+int tyni_ray_columns(const tyni_row *row, const tyni_piece *piece, const tyni_integral *integral, const tyni_sight *v,
+                     int32_t *first, int32_t *last, float *from, float *to);
 
 /* ---- many rays of a white sun at once ---- */
 
 #define TYNI_RAY_BUNDLE 16 /* rays, a whole vector of the widest ISA */
-#define TYNI_RAY_EDGES 24  /* edges of a ray at a time: it goes into the light or out of it. Even: then it is back outside */
-#define TYNI_RAY_SPARE 64  /* behind them, for who writes more than there are */
+#define TYNI_RAY_EDGES                                                                                                         \
+    38 /* edges of a ray at a time: there it goes into the light or out of it. Even: then it is back outside */
+#define TYNI_RAY_SPARE 64 /* behind them, for who writes more than there are */
 
 /* All zeros before its first use: where rays have fewer edges than their neighbours, what is there is read and dropped.
  * Rays from t = 0 to `to`; all arrays are per ray. */
 typedef struct tyni_bundle {
     int32_t count;
-    uint32_t coarse;                   /* bit n: columns are too coarse for ray n: it goes from texel to texel */
-    int32_t sample[TYNI_RAY_BUNDLE];   /* in, the first `count` */
+    uint32_t coarse;                  /* bit n: columns are too coarse for ray n: it goes from texel to texel */
+    uint16_t sample[TYNI_RAY_BUNDLE]; /* in, the first `count` */
+    uint16_t position[TYNI_RAY_BUNDLE];
     float visible[2][TYNI_RAY_BUNDLE]; /* out, by channel */
-    float v[3][TYNI_RAY_BUNDLE];       /* its way from the camera; of an orthographic one, where it starts */
     float to[TYNI_RAY_BUNDLE];
     float texels[TYNI_RAY_BUNDLE]; /* columns crossed, in steps */
-    int32_t position[TYNI_RAY_BUNDLE];
     /* of the piece at hand: r = c + t d and w alike; the steps where the ray comes in and leaves; its next and last column */
     float rc[TYNI_RAY_BUNDLE], rd[TYNI_RAY_BUNDLE], wc[TYNI_RAY_BUNDLE], wd[TYNI_RAY_BUNDLE];
     float from[TYNI_RAY_BUNDLE], until[TYNI_RAY_BUNDLE];
-    int32_t next[TYNI_RAY_BUNDLE], last[TYNI_RAY_BUNDLE];
+    uint16_t next[TYNI_RAY_BUNDLE], last[TYNI_RAY_BUNDLE];            /* next > last: none */
     uint16_t edges[TYNI_RAY_BUNDLE];                                  /* that wait for their integrals */
-    uint16_t edge[TYNI_RAY_BUNDLE * TYNI_RAY_EDGES + TYNI_RAY_SPARE]; /* ray after ray: it changes at these columns */
+    uint16_t edge[TYNI_RAY_BUNDLE * TYNI_RAY_EDGES + TYNI_RAY_SPARE]; /* ray after ray: where it changes, as the row has it */
 } tyni_bundle;
 
 /* From `count` and `sample` all the rest. depth: of the slice's samples; most: the frame's max_distance, 0: none; sigma: of the

@@ -4,20 +4,21 @@
 TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
                                        int outside, uint16_t *edges)
 {
-    const uint16_t *threshold = finder->row->threshold, *low = finder->blocks->low, *high = finder->blocks->high;
+    const uint16_t *threshold = finder->row->threshold, *edge = finder->row->edge, *low = finder->blocks->low,
+                   *high = finder->blocks->high;
     const int32_t start = first + *next, last = first + end;
     const uint64_t behind = ~(uint64_t)1 << (start & 63);
     int32_t n = (position < threshold[start]) != outside;
     if (v_n == 1)
         return find_columns(finder, first, next, end, position, outside, edges);
-    edges[0] = (uint16_t)*next;
+    edges[0] = edge[start];
     for (int32_t w = start >> 6; w <= last >> 6; w += 32) {
         uint32_t mixed = v_above16(high + w, position) & ~v_above16(low + w, position);
         if ((last >> 6) - w < 31)
             mixed &= ((uint32_t)2 << ((last >> 6) - w)) - 1;
         for (; mixed; mixed &= mixed - 1) {
             const int32_t i = 64 * (w + tyni_ctz32(mixed));
-            const uint64_t bits = v_above16(threshold + i, position) | (uint64_t)v_above16(threshold + i + 32, position) << 32;
+            const uint64_t bits = v_above64(threshold + i, position);
             uint64_t changes = bits ^ (bits << 1);
             if (i > start)
                 changes ^= position < threshold[i - 1];
@@ -25,9 +26,11 @@ TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first,
                 changes &= behind;
             if (i + 63 > last)
                 changes &= ((uint64_t)2 << (last & 63)) - 1;
-            n += v_ones64(edges + n, changes, i - first);
+            n += v_pack64(edges + n, edge + i, changes);
             if (n >= TYNI_RAY_EDGES) {
-                *next = edges[TYNI_RAY_EDGES - 1] + 1;
+                for (; n > TYNI_RAY_EDGES; n--)
+                    changes &= ~((uint64_t)1 << highest(changes));
+                *next = i + highest(changes) - first + 1;
                 return TYNI_RAY_EDGES;
             }
         }
@@ -55,10 +58,10 @@ static TYNI_V_TARGET int TYNI_V(ray_fill)(tyni_bundle *b, const tyni_finder *fin
         int32_t next = start, count = 0;
         if (next <= last) {
             uint16_t *edge = b->edge + n * TYNI_RAY_EDGES;
-            count = TYNI_V(ray_find)(finder, piece->first, &next, last, (uint32_t)b->position[n], outside, edge);
-            edge[count] = (uint16_t)(last + 1);
+            count = TYNI_V(ray_find)(finder, piece->first, &next, last, b->position[n], outside, edge);
+            edge[count] = TYNI_ROW_END;
             count += count & 1;
-            b->next[n] = next;
+            b->next[n] = (uint16_t)next;
             left |= next <= last;
             *looked += (next - start + 31) / 32;
         }
@@ -78,42 +81,29 @@ TYNI_V_INLINE v_float TYNI_V(ray_dimmed)(v_float x)
     return (1.0f - scale) - f * scale * q;
 }
 
-/* tyni_slice_sight of each ray; how far it goes. */
-static TYNI_V_TARGET void TYNI_V(ray_begin)(tyni_bundle *b, const tyni_slice *s, const tyni_view *view, const tyni_row *row,
-                                            const float *depth, float most)
+/* tyni_slice_sight of each ray: its way from the camera; of an orthographic one, where it starts. Returns its length a depth.
+ */
+TYNI_V_INLINE v_float TYNI_V(ray_way)(const tyni_bundle *b, int32_t i, const tyni_slice *s, const tyni_view *view, v_float v[3])
 {
-    for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
-        const v_int sample = v_iload(b->sample + i);
-        const v_float p = s->p0 + v_to_float(sample) * s->dp, zero = v_set(0.0f);
-        const v_float x = s->a.x + p * s->b.x, y = s->a.y + p * s->b.y, z = s->a.z + p * s->b.z;
-        v_float to = v_gather(depth, sample);
-        if (view->orthographic) {
-            v_store(b->v[0] + i, x);
-            v_store(b->v[1] + i, y);
-            v_store(b->v[2] + i, z);
-        } else {
-            const v_float length = v_sqrt(x * x + y * y + z * z), inverse = 1.0f / length;
-            v_store(b->v[0] + i, x * inverse);
-            v_store(b->v[1] + i, y * inverse);
-            v_store(b->v[2] + i, z * inverse);
-            to = to * length;
-        }
-        if (most > 0.0f)
-            to = v_min(v_set(most), to);
-        v_store(b->to + i, to);
-        v_store(b->visible[0] + i, zero);
-        v_store(b->visible[1] + i, zero);
-        v_store(b->texels + i, zero);
-        /* tyni_row_position */
-        v_istore(b->position + i, v_trunc(v_clamp((p - row->p_start) * row->p_scale, zero, v_set(65534.0f))));
+    const v_float p = s->p0 + v_to_float(v_load_u16(b->sample + i)) * s->dp;
+    v_float length = v_set(1.0f), inverse;
+    v[0] = s->a.x + p * s->b.x;
+    v[1] = s->a.y + p * s->b.y;
+    v[2] = s->a.z + p * s->b.z;
+    if (!view->orthographic) {
+        length = v_sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        inverse = 1.0f / length;
+        TYNI_UNROLL
+        for (int32_t k = 0; k < 3; k++)
+            v[k] = v[k] * inverse;
     }
+    return length;
 }
 
 /* A form along each ray. */
-TYNI_V_INLINE void TYNI_V(ray_form)(const tyni_bundle *b, int32_t i, const tyni_view *view, const tyni_form *f, v_float *c,
-                                    v_float *d)
+TYNI_V_INLINE void TYNI_V(ray_form)(const v_float v[3], const tyni_view *view, const tyni_form *f, v_float *c, v_float *d)
 {
-    const v_float dot = v_load(b->v[0] + i) * f->v.x + v_load(b->v[1] + i) * f->v.y + v_load(b->v[2] + i) * f->v.z;
+    const v_float dot = v[0] * f->v.x + v[1] * f->v.y + v[2] * f->v.z;
     if (view->orthographic) {
         *c = dot + f->c;
         *d = v_set(tyni_vec_dot(f->v, view->forward));
@@ -124,32 +114,63 @@ TYNI_V_INLINE void TYNI_V(ray_form)(const tyni_bundle *b, int32_t i, const tyni_
 }
 
 /* row_span of each ray: from >= until where it does not cross the piece. */
-static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_view *view, const tyni_piece *piece, int count)
+TYNI_V_INLINE void TYNI_V(ray_span)(tyni_bundle *b, int32_t i, const v_float v[3], const tyni_view *view,
+                                    const tyni_piece *piece, int count)
+{
+    const v_float zero = v_set(0.0f), end = v_load(b->to + i);
+    v_float rc, rd, wc, wd, near, far, low = zero, high = end, from, until, cut;
+    v_mask crosses;
+    TYNI_V(ray_form)(v, view, &piece->r, &rc, &rd);
+    TYNI_V(ray_form)(v, view, &piece->w, &wc, &wd);
+    /* the part in front of the map: w >= 1e-6 */
+    near = wc - 1e-6f;
+    far = near + end * wd;
+    cut = end * (near / (near - far));
+    low = v_select(v_mand(v_lt(near, zero), v_ge(far, zero)), cut, low);
+    high = v_select(v_mand(v_ge(near, zero), v_lt(far, zero)), cut, high);
+    crosses = v_mand(v_lt(low, high), v_mor(v_ge(near, zero), v_ge(far, zero)));
+    from = v_max(v_set(piece->from), (rc + low * rd) / (wc + low * wd));
+    until = v_min(v_set(piece->to), (rc + high * rd) / (wc + high * wd));
+    crosses = v_mand(crosses, v_lt(from, until));
+    v_store(b->rc + i, rc);
+    v_store(b->rd + i, rd);
+    v_store(b->wc + i, wc);
+    v_store(b->wd + i, wd);
+    v_store(b->from + i, v_select(crosses, from, zero));
+    v_store(b->until + i, v_select(crosses, until, zero));
+    if (count)
+        v_store(b->texels + i, v_load(b->texels + i) + v_select(crosses, until - from, zero));
+}
+
+/* How far each ray goes, and ray_spans of the first piece. */
+static TYNI_V_TARGET void TYNI_V(ray_begin)(tyni_bundle *b, const tyni_slice *s, const tyni_view *view, const tyni_row *row,
+                                            const float *depth, float most)
 {
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
-        const v_float zero = v_set(0.0f), end = v_load(b->to + i);
-        v_float rc, rd, wc, wd, near, far, low = zero, high = end, from, until, cut;
-        v_mask crosses;
-        TYNI_V(ray_form)(b, i, view, &piece->r, &rc, &rd);
-        TYNI_V(ray_form)(b, i, view, &piece->w, &wc, &wd);
-        /* the part in front of the map: w >= 1e-6 */
-        near = wc - 1e-6f;
-        far = near + end * wd;
-        cut = end * (near / (near - far));
-        low = v_select(v_mand(v_lt(near, zero), v_ge(far, zero)), cut, low);
-        high = v_select(v_mand(v_ge(near, zero), v_lt(far, zero)), cut, high);
-        crosses = v_mand(v_lt(low, high), v_mor(v_ge(near, zero), v_ge(far, zero)));
-        from = v_max(v_set(piece->from), (rc + low * rd) / (wc + low * wd));
-        until = v_min(v_set(piece->to), (rc + high * rd) / (wc + high * wd));
-        crosses = v_mand(crosses, v_lt(from, until));
-        v_store(b->rc + i, rc);
-        v_store(b->rd + i, rd);
-        v_store(b->wc + i, wc);
-        v_store(b->wd + i, wd);
-        v_store(b->from + i, v_select(crosses, from, zero));
-        v_store(b->until + i, v_select(crosses, until, zero));
-        if (count)
-            v_store(b->texels + i, v_load(b->texels + i) + v_select(crosses, until - from, zero));
+        const v_int sample = v_load_u16(b->sample + i);
+        const v_float p = s->p0 + v_to_float(sample) * s->dp, zero = v_set(0.0f);
+        v_float v[3], to = v_gather(depth, sample) * TYNI_V(ray_way)(b, i, s, view, v);
+        if (most > 0.0f)
+            to = v_min(v_set(most), to);
+        v_store(b->to + i, to);
+        v_store(b->visible[0] + i, zero);
+        v_store(b->visible[1] + i, zero);
+        v_store(b->texels + i, zero);
+        /* tyni_row_position */
+        v_store_u16(b->position + i, v_trunc(v_clamp((p - row->p_start) * row->p_scale, zero, v_set(65534.0f))));
+        if (row->count)
+            TYNI_V(ray_span)(b, i, v, view, &row->pieces[0], 1);
+    }
+}
+
+/* The same of another piece. */
+static TYNI_V_TARGET void TYNI_V(ray_spans)(tyni_bundle *b, const tyni_slice *slice, const tyni_view *view,
+                                            const tyni_piece *piece, int count)
+{
+    for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
+        v_float v[3];
+        TYNI_V(ray_way)(b, i, slice, view, v);
+        TYNI_V(ray_span)(b, i, v, view, piece, count);
     }
 }
 
@@ -160,8 +181,28 @@ TYNI_V_INLINE v_mask TYNI_V(ray_coarse_mask)(const tyni_bundle *b, int32_t i, fl
     return v_mand(v_gt(texels, v_set(0.0f)), v_gt(share, most * texels));
 }
 
+/* What each word has first and second in memory. */
+TYNI_V_INLINE void TYNI_V(ray_halves)(v_int word, v_int half[2])
+{
+    const v_int low = v_iand(word, v_iset(0xffff)), high = v_shr(word, 16);
+    const uint16_t one = 1;
+    uint8_t low_first;
+    memcpy(&low_first, &one, 1);
+    half[0] = low_first ? low : high;
+    half[1] = low_first ? high : low;
+}
+
+/* Where the second column of each step begins. */
+TYNI_V_INLINE v_float TYNI_V(ray_second)(const tyni_row *row, const tyni_piece *piece, v_int step)
+{
+    v_int half[2];
+    TYNI_V(ray_halves)(v_igather(row->edge + piece->first, v_shl(step, 2)), half);
+    return v_to_float(half[1]) * piece->unit;
+}
+
 /* columns_of each ray that crosses the piece and is not coarse; of others none. */
-static TYNI_V_TARGET void TYNI_V(ray_enter)(tyni_bundle *b, const tyni_piece *piece, float sigma, float most)
+static TYNI_V_TARGET void TYNI_V(ray_enter)(tyni_bundle *b, const tyni_row *row, const tyni_piece *piece, float sigma,
+                                            float most)
 {
     const v_int one = v_iset(1), none = v_iset(0), final = v_iset(piece->steps - 1);
     for (int32_t i = 0; i < TYNI_RAY_BUNDLE; i += v_n) {
@@ -169,11 +210,11 @@ static TYNI_V_TARGET void TYNI_V(ray_enter)(tyni_bundle *b, const tyni_piece *pi
         const v_mask coarse = TYNI_V(ray_coarse_mask)(b, i, sigma, most), crosses = v_mandnot(v_lt(from, until), coarse);
         const v_int k = v_imax(v_imin(v_trunc(from), final), none);
         const v_int l = v_imax(v_imin(v_isub(v_ceili(until), one), final), k);
-        const v_mask second = v_ge(from - v_to_float(k), v_gather(piece->split, k));
-        const v_mask both = v_gt(until - v_to_float(l), v_gather(piece->split, l));
+        const v_mask second = v_ge(from, TYNI_V(ray_second)(row, piece, k));
+        const v_mask both = v_gt(until, TYNI_V(ray_second)(row, piece, l));
         b->coarse = (i ? b->coarse : 0) | v_word(coarse) << i;
-        v_istore(b->next + i, v_iadd(v_iadd(k, k), v_iselect(second, one, none)));
-        v_istore(b->last + i, v_iselect(crosses, v_iadd(v_iadd(l, l), v_iselect(both, one, none)), v_iset(-1)));
+        v_store_u16(b->next + i, v_iselect(crosses, v_iadd(v_iadd(k, k), v_iselect(second, one, none)), one));
+        v_store_u16(b->last + i, v_iselect(crosses, v_iadd(v_iadd(l, l), v_iselect(both, one, none)), none));
         if (is_flat(piece)) { /* w is the same all along the ray */
             const v_float inverse = 1.0f / v_load(b->rd + i);
             v_store(b->rc + i, v_load(b->rc + i) * inverse);
@@ -200,28 +241,25 @@ TYNI_V_INLINE v_float TYNI_V(ray_t)(const tyni_bundle *b, int flat, int32_t i, v
     return v_clamp(at, v_set(0.0f), v_load(b->to + i));
 }
 
-/* The same at one of its columns. */
-TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, v_int column)
+/* The same at edges of the row. Of an orthographic map t is linear along it: between the t of the ray's ends. */
+TYNI_V_INLINE v_float TYNI_V(ray_place)(const tyni_bundle *b, int flat, int32_t i, float unit, v_int edge,
+                                        const v_float ends[2])
 {
-    const v_int step = v_shr(column, 1), one = v_iset(1);
-    /* rays with fewer edges have there what others left */
-    v_float at = v_gather(piece->split, v_imin(step, v_iset(piece->steps - 1)));
-    at = v_to_float(step) + v_select(v_ieq(v_iand(column, one), one), at, v_set(0.0f));
+    const v_float at = v_to_float(edge);
     /* the first column begins before the ray comes in, the last one ends behind its end */
-    return TYNI_V(ray_t)(b, flat, i, v_clamp(at, v_load(b->from + i), v_load(b->until + i)));
+    if (flat)
+        return v_clamp(at * (unit * v_load(b->rd + i)) - v_load(b->rc + i), ends[0], ends[1]);
+    return TYNI_V(ray_t)(b, flat, i, v_clamp(at * unit, v_load(b->from + i), v_load(b->until + i)));
 }
 
-/* Where edges e and e + 1 of each ray are, two columns in a word. */
-TYNI_V_INLINE void TYNI_V(ray_pair)(const tyni_bundle *b, const tyni_piece *piece, int flat, int32_t i, int32_t e,
+/* Where edges e and e + 1 of each ray are. Rays with fewer have there what others left. */
+TYNI_V_INLINE void TYNI_V(ray_pair)(const tyni_bundle *b, int flat, int32_t i, float unit, int32_t e, const v_float ends[2],
                                     v_float *begin, v_float *end)
 {
-    const v_int pair = v_iload_apart(b->edge + i * TYNI_RAY_EDGES + e, TYNI_RAY_EDGES * (int32_t)sizeof *b->edge);
-    const v_int low = v_iand(pair, v_iset(0xffff)), high = v_shr(pair, 16);
-    const uint16_t one = 1;
-    uint8_t low_first;
-    memcpy(&low_first, &one, 1);
-    *begin = TYNI_V(ray_place)(b, piece, flat, i, low_first ? low : high);
-    *end = TYNI_V(ray_place)(b, piece, flat, i, low_first ? high : low);
+    v_int half[2];
+    TYNI_V(ray_halves)(v_iload_apart(b->edge + i * TYNI_RAY_EDGES + e, TYNI_RAY_EDGES * (int32_t)sizeof *b->edge), half);
+    *begin = TYNI_V(ray_place)(b, flat, i, unit, half[0], ends);
+    *end = TYNI_V(ray_place)(b, flat, i, unit, half[1], ends);
 }
 
 /* The integrals up to the edges that wait: those with an even number begin what differs from outside, those with an odd number
@@ -235,10 +273,12 @@ static TYNI_V_TARGET void TYNI_V(ray_settle)(tyni_bundle *b, const tyni_piece *p
         const v_int edges = v_load_u16(b->edges + i);
         v_float sum0 = v_load(b->visible[0] + i), sum1 = v_load(b->visible[1] + i);
         v_mask some = v_igt(edges, v_iset(0));
-        v_float begin, end;
+        v_float begin, end, ends[2];
         if (v_none(some))
             continue;
-        TYNI_V(ray_pair)(b, piece, flat, i, 0, &begin, &end);
+        ends[0] = TYNI_V(ray_t)(b, flat, i, v_load(b->from + i));
+        ends[1] = TYNI_V(ray_t)(b, flat, i, v_load(b->until + i));
+        TYNI_V(ray_pair)(b, flat, i, piece->unit, 0, ends, &begin, &end);
         /* the next two places before the light of these: either is a long chain, and so they overlap */
         for (int32_t e = 2; v_any(some); e += 2) {
             const v_float t0 = begin, t1 = end;
@@ -246,7 +286,7 @@ static TYNI_V_TARGET void TYNI_V(ray_settle)(tyni_bundle *b, const tyni_piece *p
             v_float light0, light1;
             some = v_igt(edges, v_iset(e));
             if (v_any(some))
-                TYNI_V(ray_pair)(b, piece, flat, i, e, &begin, &end);
+                TYNI_V(ray_pair)(b, flat, i, piece->unit, e, ends, &begin, &end);
             light0 = TYNI_V(ray_dimmed)(s0 * t1) - TYNI_V(ray_dimmed)(s0 * t0);
             light1 = TYNI_V(ray_dimmed)(s1 * t1) - TYNI_V(ray_dimmed)(s1 * t0);
             sum0 = sum0 + v_select(now, light0, zero);

@@ -108,11 +108,13 @@ static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice,
 #define TYNI_KERNEL "row_kernel.h"
 #include "lanes/each.h"
 
-/* Where thresholds are written. */
+typedef char edges_fit[2 * (TYN_MAX_SHADOW + 4) <= TYNI_ROW_END ? 1 : -1];
+
+/* Where thresholds and edges are written. */
 typedef struct pen {
     int32_t isa;
     uint16_t *threshold;
-    float *split;
+    uint16_t *edge;
     size_t room;
 } pen;
 
@@ -123,6 +125,7 @@ static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, c
     const tyni_map *map = &lamp->maps[i];
     tyni_piece *piece = &row->pieces[row->count];
     const tyni_form *form;
+    int32_t shift = 0;
     tyni_course c;
     ends e;
     tyni_course_begin(&c, u, v);
@@ -135,31 +138,34 @@ static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, c
     piece->from = c.from;
     piece->to = c.to;
     piece->first = row->columns;
-    piece->split = w->split;
     piece->map = (int8_t)i;
     if (!ends_begin(&e, piece, slice, view, map, p))
         return;
     piece->steps = tyni_course_on(&c, &map->texels, &piece->cells);
-    TYNI_LANES_CALL(w->isa, row_fill, (&map->texels, &piece->cells, c.from, &e, piece->steps, w->threshold, w->split));
+    while (shift < 15 && piece->steps << (shift + 1) <= TYNI_ROW_END)
+        shift++;
+    piece->unit = 1.0f / (float)(1 << shift);
+    TYNI_LANES_CALL(w->isa, row_fill, (&map->texels, &piece->cells, c.from, &e, piece->steps, shift, w->threshold, w->edge));
     row->count++;
     row->columns += 2 * piece->steps;
     w->threshold += 2 * piece->steps;
-    w->split += piece->steps;
+    w->edge += 2 * piece->steps;
     w->room -= (size_t)piece->steps;
 }
 
-void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
+void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, uint16_t *edge, size_t room, const tyni_slice *slice,
                     const tyni_lamp *lamp, const tyni_view *view, float reach)
 {
     /* what no map has covered yet: a local light's columns as two quarters, since half a circle cannot be clipped by lines */
     fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
     int32_t fans = tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
     float pa = tyni_slice_p(slice, slice->first), pb = tyni_slice_p(slice, slice->last), p[2], u[2], v[2];
-    pen w = {isa, threshold, split, room};
+    pen w = {isa, threshold, edge, room};
     int rising = (0.5f * (pa + pb) < slice->epipole) != lamp->behind; /* p rises towards the lit end */
     row->count = 0;
     row->columns = 0;
     row->threshold = threshold;
+    row->edge = edge;
     /* the line's lit end comes first: the one nearer to the light on the screen */
     p[0] = rising == (pa < pb) ? pb : pa;
     p[1] = rising == (pa < pb) ? pa : pb;

@@ -6,8 +6,9 @@
  * integer compare.
  *
  * The line crosses one or two texels for each step along its major axis, and each is a column: columns 2k and 2k + 1 share the
- * step k .. k + 1 and meet at k + split[k]. One texel a step, as the papers have it, misplaces shadows by up to half a texel: 3
- * dB in a scene of leaves, which finer slices do not bring back. */
+ * step k .. k + 1 and meet somewhere in it. One texel a step, as the papers have it, misplaces shadows by up to half a texel: 3
+ * dB in a scene of leaves, which finer slices do not bring back. Where columns begin is kept in 16 bits too, 1/32 of a step for
+ * 2047 steps: a list of a ray's edges is then made of these as they are, and nothing is looked up for them one by one. */
 #ifndef TYNI_ROW_H
 #define TYNI_ROW_H
 
@@ -21,9 +22,9 @@
 /* The columns of one shadow map, or of a part of it: where several maps meet (cascades, the faces of a cube) each column is
  * looked up in the first map that covers it, and the row is a chain of pieces. */
 typedef struct tyni_piece {
-    const float *split; /* of step k: 0 .. 1; 1: one texel, its two columns are alike */
-    int32_t first;      /* column of the row that is its column 0 */
+    int32_t first; /* column of the row that is its column 0 */
     int32_t steps;
+    float unit;     /* in steps, of where columns begin: 2^-n, so that they all fit 16 bits */
     float from, to; /* step coordinates where the piece begins and ends, inside the first and the last step */
     /* Step coordinate of a camera-relative point: r . p / w . p. Rises along every view ray. */
     tyni_form r, w;
@@ -39,26 +40,29 @@ typedef struct tyni_row {
     int32_t count;             /* of pieces; 0: the slice misses all maps */
     int32_t columns;           /* of all pieces, one after the other */
     const uint16_t *threshold; /* of these; lit for a ray at position q if q < threshold */
+    const uint16_t *edge;      /* where they begin, in units from the piece's step 0; that of 2 k is k */
     float p_start, p_scale;    /* position of a ray through p: (p - p_start) * p_scale */
     tyni_piece pieces[TYNI_ROW_PIECES];
 } tyni_row;
 
-/* Where column i begins. */
-static inline float tyni_row_edge(const tyni_piece *piece, int32_t i)
+/* The step coordinate where column i of a piece begins. */
+static inline float tyni_row_edge(const tyni_row *row, const tyni_piece *piece, int32_t i)
 {
-    float k = (float)(i >> 1);
-    return i & 1 ? k + piece->split[i >> 1] : k;
+    return (float)row->edge[piece->first + i] * piece->unit;
 }
 
-/* Steps that a row can have, for the memory of split (once) and threshold (twice). */
+/* Behind all edges. */
+#define TYNI_ROW_END 65535
+
+/* Steps that a row can have: threshold and edge have two entries for each. */
 static inline size_t tyni_row_room(int32_t shadow_size, int32_t maps)
 {
     return (size_t)maps * ((size_t)shadow_size + 4);
 }
 
-/* Builds the row into `threshold` and `split`. `reach`: no view ray gets farther from the axis camera - light than this
+/* Builds the row into `threshold` and `edge`. `reach`: no view ray gets farther from the axis camera - light than this
  * (directional lights; what lies beyond is not built). */
-void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, float *split, size_t room, const tyni_slice *slice,
+void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, uint16_t *edge, size_t room, const tyni_slice *slice,
                     const tyni_lamp *lamp, const tyni_view *view, float reach);
 
 /* Least and greatest threshold of each 64 columns of the row and of the one before them: a ray whose position is below all or

@@ -13,28 +13,40 @@ TYNI_V_INLINE v_int TYNI_V(row_column)(const ends *e, v_float g, v_float z)
     return v_trunc(v_select(some, part, v_set(65535.0f)));
 }
 
-static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cells *c, float from, const ends *e, int32_t steps,
-                                           uint16_t *threshold, float *split)
+/* Two numbers of 16 bits each to memory, those of n lanes. */
+TYNI_V_INLINE void TYNI_V(row_pairs)(uint16_t *p, v_int a, v_int b, int32_t n)
 {
     const uint16_t one = 1;
-    /* of step 0, what lies before the row: its surface would be judged from behind the camera, where lit is dark */
-    v_float before = v_max(from - v_to_float(v_index()), v_set(0.0f));
     uint8_t low_first;
     memcpy(&low_first, &one, 1);
+    v_istore_n(p, low_first ? v_ior(a, v_shl(b, 16)) : v_ior(b, v_shl(a, 16)), n);
+}
+
+/* 2^-shift: the unit of edges. */
+static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cells *c, float from, const ends *e, int32_t steps,
+                                           int32_t shift, uint16_t *threshold, uint16_t *edge)
+{
+    const float units = (float)(1 << shift);
+    /* of step 0, what lies before the row: its surface would be judged from behind the camera, where lit is dark */
+    v_float before = v_max(from - v_to_float(v_index()), v_set(0.0f));
     for (int32_t k = 0; k < steps; k += v_n) {
         /* lanes behind the last step do it again */
         const v_int step = v_imin(v_iadd(v_iset(k), v_index()), v_iset(steps - 1));
         const v_float at = v_to_float(step);
-        v_int ta, tb, cell[2];
+        v_int ta, tb, first, second, cell[2];
         v_float cut;
         const v_mask same = TYNI_V(course_cells)(t, c, step, cell, &cut);
         ta = TYNI_V(row_column)(e, at + 0.5f * (before + cut), TYNI_V(door_texels)(t, cell[0]));
         tb = ta;
-        if (!v_all(same))
+        first = v_shl(step, shift);
+        second = v_iadd(first, v_iset(1 << shift));
+        if (!v_all(same)) {
             tb = v_iselect(same, ta,
                            TYNI_V(row_column)(e, at + 0.5f + 0.5f * v_max(before, cut), TYNI_V(door_texels)(t, cell[1])));
-        v_store_n(split + k, cut, steps - k);
-        v_istore_n(threshold + 2 * k, low_first ? v_ior(ta, v_shl(tb, 16)) : v_ior(tb, v_shl(ta, 16)), steps - k);
+            second = v_iadd(first, v_trunc(cut * units + 0.5f));
+        }
+        TYNI_V(row_pairs)(threshold + 2 * k, ta, tb, steps - k);
+        TYNI_V(row_pairs)(edge + 2 * k, first, second, steps - k);
         before = v_set(0.0f);
     }
 }

@@ -123,7 +123,7 @@ static void run_bundles(const tyni_pass *p, const tyni_slice *slice, const tyni_
     b->count = 0;
     for (int32_t w = slice->first >> 5; w <= slice->last >> 5; w++)
         for (uint32_t bits = rays[w]; bits; bits &= bits - 1) {
-            b->sample[b->count++] = 32 * w + tyni_ctz32(bits);
+            b->sample[b->count++] = (uint16_t)(32 * w + tyni_ctz32(bits));
             if (b->count == TYNI_RAY_BUNDLE) {
                 run_bundle(p, slice, finder, s);
                 b->count = 0;
@@ -157,8 +157,8 @@ static void build_row(const tyni_pass *p, const tyni_slice *slice, tyni_scratch 
     finder->coarse = p->quads ? 0.2f : 0.05f; /* where pixels are about right, so may rays be */
     if (tyni_ray_way(config->rays, TYN_RAYS_STEPS) && !tyni_prefilter_method(p->method))
         return;
-    tyni_row_build(s->row, config->isa, s->threshold, s->split, tyni_row_room(config->shadow_size, config->maps), slice,
-                   p->lamp, &p->view, tyni_sample_reach(s->depth, config->isa, slice, &p->view));
+    tyni_row_build(s->row, config->isa, s->threshold, s->edge, tyni_row_room(config->shadow_size, config->maps), slice, p->lamp,
+                   &p->view, tyni_sample_reach(s->depth, config->isa, slice, &p->view));
     s->stats->columns += s->row->columns;
     if (config->rays == TYN_RAYS_WORDS)
         tyni_row_bound(&s->blocks, config->isa, s->row);

@@ -314,9 +314,9 @@ static TYNI_V_TARGET uint32_t TYNI_V(test_word)(const uint16_t *t, uint32_t posi
     return v_above16(t, position);
 }
 
-static TYNI_V_TARGET int32_t TYNI_V(test_ones)(uint16_t *out, uint64_t bits, int32_t base)
+static TYNI_V_TARGET int32_t TYNI_V(test_pack)(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
-    return v_ones64(out, bits, base);
+    return v_pack64(out, from, bits);
 }
 
 static TYNI_V_TARGET void TYNI_V(test_dots8)(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

@@ -16,8 +16,7 @@ static const tyn_method methods[2] = {TYN_METHOD_PREFILTERED, TYN_METHOD_HYBRID}
 /* All of 0 .. end in rising runs, whatever the light, and the thresholds are the row's. */
 static void test_columns(void)
 {
-    static uint16_t threshold[2 * 6 * 260];
-    static float split[6 * 260];
+    static uint16_t threshold[2 * 6 * 260], edge[2 * 6 * 260];
     static tyni_lamp lamp;
     static tyni_row row;
     TEST("columns in a row");
@@ -38,7 +37,7 @@ static void test_columns(void)
             tyni_slice_line(&slice, &slices, &lamp, &view, i);
             if (slice.first > slice.last)
                 continue;
-            tyni_row_build(&row, TYN_ISA_SCALAR, threshold, split, 6 * 260, &slice, &lamp, &view, end);
+            tyni_row_build(&row, TYN_ISA_SCALAR, threshold, edge, 6 * 260, &slice, &lamp, &view, end);
             tyni_columns_begin(&c, &row, &slice, &lamp, end);
             while (tyni_columns_next(&c, &from, &to, &q)) {
                 inside &= from == at && to > from && to <= end && q <= 65535;

@@ -17,8 +17,7 @@ enum { STEPS = 700, COLUMNS = 2 * STEPS, SAMPLES = 400 };
 
 /* A row made by hand, of a sun: steps are a metre, the ray starts at the camera and runs along the row. */
 typedef struct bench {
-    uint16_t threshold[COLUMNS];
-    float split[STEPS];
+    uint16_t threshold[COLUMNS + 64], edge[COLUMNS + 64]; /* finders read whole blocks */
     tyni_row row;
     tyni_slice slice;
     uint16_t low[COLUMNS / 64 + 33], high[COLUMNS / 64 + 33];
@@ -56,12 +55,8 @@ static void set_up(bench *b, int pieces, int falling)
     int steps = 1 + (int)(test_random() % STEPS), first = pieces > 1 ? steps / 2 : steps;
     memset(b, 0, sizeof *b);
     fill(b->threshold, 2 * steps);
-    for (int k = 0; k < steps; k++)
-        b->split[k] = test_random() % 3u ? 1.0f : test_random_float(0, 1);
-    for (int k = 0; k < steps; k++)
-        if (b->split[k] >= 1.0f)
-            b->threshold[2 * k + 1] = b->threshold[2 * k];
     b->row.threshold = b->threshold;
+    b->row.edge = b->edge;
     b->row.columns = 2 * steps;
     for (int k = 0; k < pieces && (k == 0 || first < steps); k++) {
         tyni_piece *p = &b->row.pieces[b->row.count++];
@@ -71,8 +66,15 @@ static void set_up(bench *b, int pieces, int falling)
             continue;
         }
         p->first = 2 * from;
-        p->split = b->split + from;
         p->steps = count;
+        p->unit = 1.0f / 64;
+        for (int i = 0; i < count; i++) {
+            int whole = test_random() % 3u != 0;
+            b->edge[2 * (from + i)] = (uint16_t)(64 * i);
+            b->edge[2 * (from + i) + 1] = (uint16_t)(64 * i + (whole ? 64 : (int)(test_random() % 65u)));
+            if (whole)
+                b->threshold[2 * (from + i) + 1] = b->threshold[2 * (from + i)];
+        }
         p->to = (float)count;
         p->r.v.x = 1; /* the step coordinate is x, less where the piece begins */
         p->r.c = -(float)from;
@@ -109,13 +111,13 @@ static void untraversed(const bench *b, float p, const tyni_integral *it, const 
         tyni_line r = tyni_line_along(&piece->r, v);
         int32_t first, last;
         float from, to;
-        if (!tyni_ray_columns(piece, it, v, &first, &last, &from, &to))
+        if (!tyni_ray_columns(&b->row, piece, it, v, &first, &last, &from, &to))
             continue;
         from = from > 0 ? from : 0;
         to = to < (float)piece->steps ? to : (float)piece->steps;
         for (int32_t c = first; c <= last; c++)
             tyni_meter_lit(&m, position < b->row.threshold[piece->first + c],
-                           ((c == first ? from : tyni_row_edge(piece, c)) - r.c) / r.d);
+                           ((c == first ? from : tyni_row_edge(&b->row, piece, c)) - r.c) / r.d);
         tyni_meter_lit(&m, m.outside, (to - r.c) / r.d);
     }
     tyni_meter_end(&m);
@@ -278,8 +280,8 @@ static void test_tree_work(void)
 /* A bundle's rays where all are coarse: what an exact walk of each finds. */
 static void test_coarse(void)
 {
-    static uint16_t threshold[2 * 6 * 260];
-    static float split[6 * 260], depth[64 + 16];
+    static uint16_t threshold[2 * 6 * 260], edge[2 * 6 * 260];
+    static float depth[64 + 16];
     static tyni_lamp lamp;
     static tyni_row row;
     static tyni_bundle bundle;
@@ -310,10 +312,10 @@ static void test_coarse(void)
                 depth[j] = test_random_float(0, view.far_depth);
             if (slice.first > slice.last)
                 continue;
-            tyni_row_build(&row, f.isa, threshold, split, 6 * 260, &slice, &lamp, &view, 1e4f);
+            tyni_row_build(&row, f.isa, threshold, edge, 6 * 260, &slice, &lamp, &view, 1e4f);
             memset(&bundle, 0, sizeof bundle);
             for (int32_t j = slice.first; j <= slice.last && bundle.count < TYNI_RAY_BUNDLE; j += 1 + (int)(test_random() % 4u))
-                bundle.sample[bundle.count++] = j;
+                bundle.sample[bundle.count++] = (uint16_t)j;
             tyni_ray_bundle(&bundle, &f, &slice, &view, depth, 0.0f, &lamp, sigma);
             for (int32_t k = 0; k < bundle.count; k++, rays++) {
                 tyni_sight v;

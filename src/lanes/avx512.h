@@ -335,16 +335,27 @@ TYNI_AVX512_OP uint32_t tyni_avx512_above16(const uint16_t *t, uint32_t position
     return _mm512_cmplt_epu16_mask(_mm512_set1_epi16((int16_t)(uint16_t)position), _mm512_loadu_si512(t));
 }
 
-/* VBMI2's compression. With F's, of four times 16 words, looking for edges (ray.c) takes half as long again. */
-TYNI_AVX512_OP int32_t tyni_avx512_ones64(uint16_t *out, uint64_t bits, int32_t base)
+TYNI_AVX512_OP uint64_t tyni_avx512_above64(const uint16_t *t, uint32_t position)
 {
-    static const uint16_t ramp[32] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
-                                      16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
-    const __m512i low = _mm512_add_epi16(_mm512_set1_epi16((int16_t)base), _mm512_loadu_si512(ramp));
-    const __m512i high = _mm512_add_epi16(low, _mm512_set1_epi16(32));
-    _mm512_storeu_si512(out, _mm512_maskz_compress_epi16((uint32_t)bits, low));
-    _mm512_storeu_si512(out + __builtin_popcount((uint32_t)bits), _mm512_maskz_compress_epi16((uint32_t)(bits >> 32), high));
-    return __builtin_popcountll(bits);
+    const __m512i p = _mm512_set1_epi16((int16_t)(uint16_t)position);
+    return _cvtmask64_u64(_mm512_kunpackd(_mm512_cmplt_epu16_mask(p, _mm512_loadu_si512(t + 32)),
+                                          _mm512_cmplt_epu16_mask(p, _mm512_loadu_si512(t))));
+}
+
+/* VBMI2's compression, of places, and then a shuffle. */
+TYNI_AVX512_OP int32_t tyni_avx512_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
+{
+    static const uint8_t ramp[64] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+                                     22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
+                                     44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+    const __m512i low = _mm512_loadu_si512(from), high = _mm512_loadu_si512(from + 32);
+    const __m512i place = _mm512_maskz_compress_epi8(_cvtu64_mask64(bits), _mm512_loadu_si512(ramp));
+    const int32_t n = __builtin_popcountll(bits);
+    _mm512_storeu_si512(out, _mm512_permutex2var_epi16(low, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(place)), high));
+    if (n > 32)
+        _mm512_storeu_si512(out + 32,
+                            _mm512_permutex2var_epi16(low, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(place, 1)), high));
+    return n;
 }
 
 TYNI_AVX512_OP void tyni_avx512_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)

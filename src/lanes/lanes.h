@@ -61,8 +61,9 @@
  *     v_store_rgb(p, r, g, b)            3 v_n floats, r g b r g b ...; v_store_rgb_n(p, r, g, b, n); v_load_rgb(p, &r, &g, &b)
  *     v_store_rgba8(p, r, g, b, a)       4 v_n bytes out of the low 8 bits of v_ints; v_store_rgba8_n(p, r, g, b, a, n)
  *     v_above16(t, position)             32 bits from 32 uint16_t: bit i is position < t[i]; position is 0 .. 65535
- *     v_ones64(out, bits, base)          base + i for each bit i of 64 that is set, in order, as uint16_t; returns how many.
- *                                        All of out[0 .. 63] may be written
+ *     v_above64(t, position)             the same of 64
+ *     v_pack64(out, from, bits)          uint16_t from[i] for each bit i of 64 that is set, in order; returns how many.
+ *                                        All 64 of from may be read and all of out[0 .. 63] written
  * Over lanes:
  *     v_sum16(part)                      of v_float part[16 / v_n], 16 partial sums, in one order on every ISA
  *     v_hmin(x) v_hmax(x)                no NaN; which zero of two is open
@@ -182,7 +183,8 @@
 #define v_store_rgb TYNI_V(store_rgb)
 #define v_load_rgb TYNI_V(load_rgb)
 #define v_above16 TYNI_V(above16)
-#define v_ones64 TYNI_V(ones64)
+#define v_above64 TYNI_V(above64)
+#define v_pack64 TYNI_V(pack64)
 #define v_dots8 TYNI_V(dots8)
 #define v_gt TYNI_V(gt)
 #define v_ge TYNI_V(ge)

@@ -287,6 +287,10 @@ TYNI_SCALAR_OP uint32_t tyni_scalar_above16(const uint16_t *t, uint32_t position
     return word;
 }
 
+TYNI_SCALAR_OP uint64_t tyni_scalar_above64(const uint16_t *t, uint32_t position)
+{
+    return tyni_scalar_above16(t, position) | (uint64_t)tyni_scalar_above16(t + 32, position) << 32;
+}
 /* The lowest bit that is set; x != 0. */
 TYNI_SCALAR_OP int32_t tyni_scalar_ctz64(uint64_t x)
 {
@@ -296,24 +300,24 @@ TYNI_SCALAR_OP int32_t tyni_scalar_ctz64(uint64_t x)
     return (uint32_t)x ? tyni_ctz32((uint32_t)x) : 32 + tyni_ctz32((uint32_t)(x >> 32));
 #endif
 }
-/* What ones64 writes, for all that have no instruction for it. Four at a time without asking whether there are so many: a
+/* What pack64 writes, for all that have no instruction for it. Four at a time without asking whether there are so many: a
  * branch that nobody can foretell costs more. */
-TYNI_SCALAR_OP void tyni_scalar_list64(uint16_t *out, uint64_t bits, int32_t base)
+TYNI_SCALAR_OP void tyni_scalar_list64(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
     const uint64_t top = (uint64_t)1 << 63;
     do {
         const uint64_t second = bits & (bits - 1), third = second & (second - 1), fourth = third & (third - 1);
-        out[0] = (uint16_t)(base + tyni_scalar_ctz64(bits | top));
-        out[1] = (uint16_t)(base + tyni_scalar_ctz64(second | top));
-        out[2] = (uint16_t)(base + tyni_scalar_ctz64(third | top));
-        out[3] = (uint16_t)(base + tyni_scalar_ctz64(fourth | top));
+        out[0] = from[tyni_scalar_ctz64(bits | top)];
+        out[1] = from[tyni_scalar_ctz64(second | top)];
+        out[2] = from[tyni_scalar_ctz64(third | top)];
+        out[3] = from[tyni_scalar_ctz64(fourth | top)];
         out += 4;
         bits = fourth & (fourth - 1);
     } while (bits);
 }
-TYNI_SCALAR_OP int32_t tyni_scalar_ones64(uint16_t *out, uint64_t bits, int32_t base)
+TYNI_SCALAR_OP int32_t tyni_scalar_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
-    tyni_scalar_list64(out, bits, base);
+    tyni_scalar_list64(out, from, bits);
     return tyni_ones32((uint32_t)bits) + tyni_ones32((uint32_t)(bits >> 32));
 }
 

@@ -317,9 +317,14 @@ TYNI_WASM_OP uint32_t tyni_wasm_above16(const uint16_t *t, uint32_t position)
     return word;
 }
 
-TYNI_WASM_OP int32_t tyni_wasm_ones64(uint16_t *out, uint64_t bits, int32_t base)
+TYNI_WASM_OP uint64_t tyni_wasm_above64(const uint16_t *t, uint32_t position)
 {
-    return tyni_scalar_ones64(out, bits, base);
+    return tyni_wasm_above16(t, position) | (uint64_t)tyni_wasm_above16(t + 32, position) << 32;
+}
+
+TYNI_WASM_OP int32_t tyni_wasm_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
+{
+    return tyni_scalar_pack64(out, from, bits);
 }
 
 TYNI_WASM_OP void tyni_wasm_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
