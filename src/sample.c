@@ -17,6 +17,17 @@ static int32_t previous(const uint32_t *words, int32_t j, int32_t first)
     return bits ? w * 32 + 31 - tyni_clz32(bits) : first;
 }
 
+static void set(uint32_t *words, int32_t j)
+{
+    words[j >> 5] |= 1u << (j & 31);
+}
+
+static void halve(uint32_t *fresh, int32_t a, int32_t b)
+{
+    if (b - a > 1)
+        set(fresh, a + (b - a) / 2);
+}
+
 #define TYNI_KERNEL "sample_kernel.h"
 #include "lanes/each.h"
 
@@ -54,11 +65,6 @@ int32_t tyni_sample_breaks(uint32_t *breaks, int32_t isa, const float *depth, in
     for (int32_t w = 0; w < words; w++)
         count += tyni_ones32(breaks[w]);
     return count;
-}
-
-static void set(uint32_t *words, int32_t j)
-{
-    words[j >> 5] |= 1u << (j & 31);
 }
 
 int32_t tyni_sample_breaks_at(uint32_t *breaks, const float *depth, const tyni_slice *slice, const tyni_view *view,
@@ -135,12 +141,6 @@ static int bent(float *const value[3], int32_t values, int32_t a, int32_t b, int
     return off;
 }
 
-static void halve(uint32_t *fresh, int32_t a, int32_t b)
-{
-    if (b - a > 1)
-        set(fresh, a + (b - a) / 2);
-}
-
 /* Compares rays from `a` on, until none of three is fresh; returns the last of those. New rays are not in `rays` yet, which
  * tells them from the fresh ones. */
 static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks, float *const value[3],
@@ -172,11 +172,15 @@ static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, con
     return a;
 }
 
-int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, float *const value[3], int32_t values,
-                           int32_t first, int32_t last, float tolerance)
+int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, int32_t isa, float *const value[3],
+                           int32_t values, int32_t first, int32_t last, float tolerance)
 {
-    int32_t words = tyni_sample_words(last + 1), count = 0;
-    for (int32_t j = tyni_sample_next(fresh, first, last); j <= last;) {
+    const int32_t words = tyni_sample_words(last + 1), from = first >> 5;
+    const int all = memcmp(fresh + from, rays + from, sizeof *rays * (size_t)(words - from)) == 0;
+    int32_t count = 0;
+    if (all && TYNI_LANES_WIDE(isa))
+        TYNI_LANES_CALL(isa, sample_bends, (fresh, rays, breaks, value, values, first, last, tolerance));
+    for (int32_t j = all && TYNI_LANES_WIDE(isa) ? last + 1 : tyni_sample_next(fresh, first, last); j <= last;) {
         int32_t a = previous(rays, previous(rays, j, first), first);
         a = refine_from(a, fresh, rays, breaks, value, values, last, tolerance);
         do /* the next one that is fresh */

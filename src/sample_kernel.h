@@ -65,6 +65,83 @@ static TYNI_V_TARGET void TYNI_V(sample_breaks)(uint32_t *breaks, const float *d
     }
 }
 
+/* Rays in hand, at least; so many more may be. */
+#define RAYS 64
+/* Of a ray's place: a break follows. The rest is samples from the first in hand. Rays are at most 64 samples apart. */
+#define BREAK 0x8000
+
+/* Adds rays from word w on to `place` until there are RAYS or no more. Returns how many; moves w behind them. */
+TYNI_V_INLINE int32_t TYNI_V(sample_list)(const uint32_t *rays, const uint32_t *breaks, int32_t *w, int32_t last, int32_t base,
+                                          uint16_t *place, int32_t n)
+{
+    for (; 32 * *w <= last && n < RAYS; *w += 2) {
+        const int two = 32 * *w + 32 <= last;
+        const uint64_t bits = rays[*w] | (uint64_t)(two ? rays[*w + 1] : 0) << 32;
+        const uint64_t ends = breaks[*w] | (uint64_t)(two ? breaks[*w + 1] : 0) << 32;
+        uint16_t all[64];
+        for (int32_t i = 0; i < 64; i += v_n) {
+            const v_int p = v_iadd(v_iset(32 * *w - base + i), v_index());
+            v_store_u16(all + i, v_iselect(v_unword((uint32_t)(ends >> i)), v_ior(p, v_iset(BREAK)), p));
+        }
+        n += v_pack64(place + n, all, bits);
+    }
+    return n;
+}
+
+/* refine_from where all rays are fresh: three by three side by side. */
+static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(sample_bends)(uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks,
+                                                             float *const value[3], int32_t values, int32_t first, int32_t last,
+                                                             float tolerance)
+{
+    const v_int none = v_iset(0), samples = v_iset(BREAK - 1), four = v_iset(4);
+    float v[3][RAYS + 64 + 16];
+    uint16_t place[RAYS + 64 + 64];
+    int32_t base = first, w = first >> 5, n = 1;
+    place[0] = BREAK; /* there is none before the first */
+    while (32 * w <= last) {
+        n = TYNI_V(sample_list)(rays, breaks, &w, last, base, place, n);
+        for (int32_t k = 0; k < n; k += v_n) {
+            const v_int at = v_iselect(v_first(n - k), v_iand(v_load_u16(place + k), samples), none);
+            for (int32_t c = 0; c < values; c++)
+                v_store(v[c] + k, v_gather(value[c] + base, at));
+        }
+        for (int32_t i = 1; i + 1 < n; i += v_n) {
+            const v_int p = v_load_u16(place + i - 1), q = v_load_u16(place + i), r = v_load_u16(place + i + 1);
+            const v_int a = v_iand(p, samples), b = v_iand(q, samples), c = v_iand(r, samples);
+            const v_float near = v_to_float(v_isub(b, a)), far = v_to_float(v_isub(c, a)), most = tolerance * far;
+            const v_mask before = v_igt(p, samples), after = v_igt(q, samples);
+            const v_mask end = v_mor(v_igt(r, samples), v_ieq(c, v_iset(last - base)));
+            const v_mask alone = v_mand(v_mandnot(v_mand(before, end), after), v_igt(v_isub(c, b), four));
+            uint32_t bits, bent;
+            v_mask off = v_first(0);
+            for (int32_t k = 0; k < values; k++) { /* as bent() has it */
+                const v_float x = v_load(v[k] + i - 1), y = v_load(v[k] + i), z = v_load(v[k] + i + 1);
+                const v_float d = (y - x) * far - (z - x) * near;
+                off = v_mor(off, v_mor(v_gt(d, most), v_lt(d, -most)));
+            }
+            off = v_mandnot(v_mandnot(off, before), after);
+            bent = v_word(off);
+            for (bits = v_word(v_mand(v_mor(off, alone), v_first(n - 1 - i))); bits; bits &= bits - 1) {
+                const int32_t k = tyni_ctz32(bits), m = base + (place[i + k] & (BREAK - 1));
+                if (bent >> k & 1u)
+                    halve(fresh, base + (place[i + k - 1] & (BREAK - 1)), m);
+                halve(fresh, m, base + (place[i + k + 1] & (BREAK - 1)));
+            }
+        }
+        /* the last two begin what is next */
+        place[0] = place[n - 2];
+        place[1] = place[n - 1];
+        n = place[0] & (BREAK - 1);
+        place[0] = (uint16_t)(place[0] - n);
+        place[1] = (uint16_t)(place[1] - n);
+        base += n;
+        n = 2;
+    }
+}
+
+#undef RAYS
+#undef BREAK
+
 /* From the last to the first: what is read next then lies before what was written, and no load waits for a store that covers it
  * with lanes that it leaves alone. */
 static TYNI_V_TARGET void TYNI_V(sample_interpolate)(float *const value[3], int32_t values, const uint32_t *rays, int32_t first,

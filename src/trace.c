@@ -253,8 +253,8 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     memset(s.bundle, 0, sizeof *s.bundle);
     run_rays(p, &slice, &finder, s.rays, &s);
     memcpy(s.fresh, s.rays, sizeof *s.fresh * (size_t)tyni_sample_words(slice.last + 1));
-    while (config->tolerance < 1.0f && tyni_sample_refine(s.fresh, s.rays, s.breaks, s.value, tyni_maxi(p->count, 2),
-                                                          slice.first, slice.last, config->tolerance))
+    while (config->tolerance < 1.0f && tyni_sample_refine(s.fresh, s.rays, s.breaks, config->isa, s.value,
+                                                          tyni_maxi(p->count, 2), slice.first, slice.last, config->tolerance))
         run_rays(p, &slice, &finder, s.fresh, &s);
     time[3] = tyni_pass_now(p);
     if (tyni_debug_marks(p->frame->debug)) {

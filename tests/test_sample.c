@@ -173,33 +173,40 @@ static void test_refine(void)
 {
     static float values[3][MOST];
     float *const value[3] = {values[0], values[1], values[2]};
-    uint32_t breaks[WORDS], rays[WORDS], fresh[WORDS], whole[WORDS], again[WORDS];
+    uint32_t breaks[WORDS], rays[WORDS], fresh[WORDS], whole[WORDS], again[WORDS], other[WORDS];
+    const int32_t isas = tyn_isa_available();
     TEST("refinement on light");
     for (int n = 0; n < 400; n++) {
-        int last = 80 + (int)(test_random() % (MOST - 80)), rounds = 0, total = 0;
+        int last = 80 + (int)(test_random() % (MOST - 80)), first = n % 3 ? 0 : (int)(test_random() % 70u), rounds = 0,
+            total = 0;
         float bend = test_random_float(0, 4e-4f), tolerance = test_random_float(0.002f, 0.05f);
         memset(breaks, 0, sizeof breaks);
         memset(rays, 0, sizeof rays);
         for (int j = 0; j <= last; j++) {
             values[0][j] = 0.3f + 0.001f * (float)j;
             values[1][j] = bend * (float)j * (float)j * 0.05f + (j > last / 2 ? 0.2f : 0.0f);
-            rays[j >> 5] |= (uint32_t)(j % 16 == 0 || j == last) << (j & 31);
+            rays[j >> 5] |= (uint32_t)(j >= first && (j % 16 == 0 || j == first || j == last)) << (j & 31);
         }
-        for (int j = 0; j < last && n & 1; j += 1 + (int)(test_random() % 80u))
+        for (int j = first; j < last && n & 1; j += 1 + (int)(test_random() % 80u))
             breaks[j >> 5] |= 1u << (j & 31);
-        for (int j = 0; j < last; j++) /* a ray on either side of each */
+        for (int j = first; j < last; j++) /* a ray on either side of each */
             for (int k = 0; k < 2 && tyni_sample_bit(breaks, j); k++)
                 rays[(j + k) >> 5] |= 1u << ((j + k) & 31);
         memcpy(fresh, rays, sizeof fresh);
         memcpy(whole, rays, sizeof whole);
         for (int found = 1; found > 0; rounds++) {
-            memcpy(again, whole, sizeof again); /* all compared once more: nothing else is found */
-            total += found = tyni_sample_refine(fresh, rays, breaks, value, 2, 0, last, tolerance);
-            CHECK(tyni_sample_refine(again, whole, breaks, value, 2, 0, last, tolerance) == found);
-            CHECK(memcmp(whole, rays, sizeof whole) == 0 && memcmp(again, fresh, sizeof again) == 0);
+            total += found = tyni_sample_refine(fresh, rays, breaks, TYN_ISA_SCALAR, value, 2, first, last, tolerance);
+            for (int32_t isa = TYN_ISA_SCALAR; isa <= isas; isa *= 2) /* all compared once more: nothing else is found */
+                if (isa & isas) {
+                    memcpy(other, whole, sizeof other);
+                    memcpy(again, whole, sizeof again);
+                    CHECK(tyni_sample_refine(again, other, breaks, isa, value, 2, first, last, tolerance) == found);
+                    CHECK(memcmp(other, rays, sizeof other) == 0 && memcmp(again, fresh, sizeof again) == 0);
+                }
+            memcpy(whole, rays, sizeof whole);
         }
-        CHECK(rounds < 20 && (total > 0 || n & 1)); /* the step is found, if no break is there */
-        for (int a = 0, b; (b = tyni_sample_next(rays, a + 1, last)) < last; a = b) {
+        CHECK(rounds < 20 && (total > 0 || n & 1 || first)); /* the step is found, if no break is there */
+        for (int a = first, b; (b = tyni_sample_next(rays, a + 1, last)) < last; a = b) {
             int c = tyni_sample_next(rays, b + 1, last);
             float between;
             if ((b == a + 1 && tyni_sample_bit(breaks, a)) || (c == b + 1 && tyni_sample_bit(breaks, b)))
@@ -208,7 +215,7 @@ static void test_refine(void)
             CHECK(fabsf(values[1][b] - between) <= tolerance + 1e-6f || c - a == 2);
         }
         memcpy(fresh, rays, sizeof fresh);
-        CHECK(tyni_sample_refine(fresh, rays, breaks, value, 1, 0, last, tolerance) == 0);
+        CHECK(tyni_sample_refine(fresh, rays, breaks, TYN_ISA_SCALAR, value, 1, first, last, tolerance) == 0);
     }
 }
 
