@@ -1,64 +1,70 @@
 /* beside_kernel.h - a template, for unwarp.c: pixels that fit no sample at their place look for some beside it, as ED10's taps
  * do. */
 
-/* Of pixels first .. end - 1 of the run, all in one sector of the shear grid, those that fit no sample at their place: side by
- * side, as they are few and far apart. */
+/* Pixels of `list`, n of them and at most a vector, all in one sector of the shear grid. */
+TYNI_V_INLINE void TYNI_V(pixel_look)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector, const uint16_t *list,
+                                      int32_t n)
+{
+    const tyni_field *field = &p->lines;
+    const int32_t most = field->pitch - 1;
+    /* lanes behind the last pixel are the first */
+    const v_int i = v_iselect(v_first(n), v_load_u16(list), v_iset(list[0])), x = v_iadd(i, v_iset(r->x));
+    const v_int sample = v_shr(sector->along_y ? v_iset(r->y) : x, shift_of(&p->slices));
+    const v_float k = TYNI_V(pixel_place)(p, r->y, sector, x);
+    const v_float at = v_max(v_gather(r->to, i) * v_gather(r->nearness, i), v_set(TYNI_ENTRY_NEAREST));
+    TYNI_V(pixel_lines) l;
+    v_mask open = v_first(n);
+    v_float share[2];
+    l.line = v_imin(v_trunc(k), v_iset(sector->count - 2));
+    share[1] = k - v_to_float(l.line);
+    share[0] = 1.0f - share[1];
+    l.line = v_iadd(l.line, v_iset(sector->start));
+    TYNI_UNROLL
+    for (int32_t c = 0; c < 4; c++)
+        l.scale[c >> 1][c & 1] = v_gather(field->scales[c & 1] + (c >> 1), l.line);
+    for (int32_t away = 1; away <= TYNI_GATHER_BESIDE && v_any(open); away++) {
+        TYNI_V(pixel_sum) s = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
+        float low[v_n], high[v_n];
+        v_mask fits;
+        for (int32_t way = -away; way <= away; way += 2 * away) {
+            v_int entry[2];
+            TYNI_V(pixel_anywhere)
+            (field, &l, v_imin(v_imax(v_iadd(sample, v_iset(way)), v_iset(0)), v_iset(most)), entry);
+            TYNI_V(pixel_taps)(&s, v_set(field->threshold), entry, &l, at, share);
+        }
+        fits = v_mand(open, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
+        open = v_mandnot(open, fits);
+        s.weight = 1.0f / (s.weight * (1023.0f * 1023.0f));
+        v_store(low, s.low * s.weight);
+        v_store(high, s.high * s.weight);
+        for (uint32_t lanes = v_word(fits); lanes; lanes &= lanes - 1) {
+            const int32_t lane = tyni_ctz32(lanes), j = list[lane];
+            r->rejected[j >> 5] &= ~(1u << (j & 31));
+            r->value[0][j] = low[lane];
+            r->value[1][j] = high[lane];
+        }
+    }
+}
+
+/* Those of pixels first .. end - 1 of the run that fit no sample at their place: side by side, as they are few and far apart.
+ */
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector,
                                                              int32_t first, int32_t end)
 {
-    const tyni_field *field = &p->lines;
-    const int32_t most = field->pitch - 1, last = sector->count - 2;
-    uint16_t list[32 + 16];
+    uint16_t list[32 + 16 + 16];
+    int32_t n = 0;
     for (int32_t base = first & ~31; base < end; base += 32) {
         uint32_t bits = r->rejected[base >> 5];
-        int32_t count = 0;
         if (base < first)
             bits &= 0xffffffffu << (first - base);
         if (end - base < 32)
             bits &= (1u << (end - base)) - 1u;
-        if (!bits)
-            continue;
         for (; bits; bits &= bits - 1)
-            list[count++] = (uint16_t)(base + tyni_ctz32(bits));
-        for (int32_t j = 0; j < count; j += v_n) {
-            /* lanes behind the last pixel are the first */
-            const v_int i = v_iselect(v_first(count - j), v_load_u16(list + j), v_iset(list[0]));
-            const v_int x = v_iadd(i, v_iset(r->x));
-            const v_int sample = v_shr(sector->along_y ? v_iset(r->y) : x, shift_of(&p->slices));
-            const v_float k = TYNI_V(pixel_place)(p, r->y, sector, x);
-            const v_float at = v_max(v_gather(r->to, i) * v_gather(r->nearness, i), v_set(TYNI_ENTRY_NEAREST));
-            TYNI_V(pixel_lines) l;
-            v_mask open = v_first(count - j);
-            v_float share[2];
-            l.line = v_imin(v_trunc(k), v_iset(last));
-            share[1] = k - v_to_float(l.line);
-            share[0] = 1.0f - share[1];
-            l.line = v_iadd(l.line, v_iset(sector->start));
-            TYNI_UNROLL
-            for (int32_t n = 0; n < 4; n++)
-                l.scale[n >> 1][n & 1] = v_gather(field->scales[n & 1] + (n >> 1), l.line);
-            for (int32_t away = 1; away <= TYNI_GATHER_BESIDE && v_any(open); away++) {
-                TYNI_V(pixel_sum) s = {v_set(0.0f), v_set(0.0f), v_set(0.0f)};
-                float low[v_n], high[v_n];
-                v_mask fits;
-                for (int32_t way = -away; way <= away; way += 2 * away) {
-                    v_int entry[2];
-                    TYNI_V(pixel_anywhere)
-                    (field, &l, v_imin(v_imax(v_iadd(sample, v_iset(way)), v_iset(0)), v_iset(most)), entry);
-                    TYNI_V(pixel_taps)(&s, v_set(field->threshold), entry, &l, at, share);
-                }
-                fits = v_mand(open, v_gt(s.weight, v_set(TYNI_GATHER_ENOUGH)));
-                open = v_mandnot(open, fits);
-                s.weight = 1.0f / (s.weight * (1023.0f * 1023.0f));
-                v_store(low, s.low * s.weight);
-                v_store(high, s.high * s.weight);
-                for (uint32_t lanes = v_word(fits); lanes; lanes &= lanes - 1) {
-                    const int32_t lane = tyni_ctz32(lanes), n = list[j + lane];
-                    r->rejected[n >> 5] &= ~(1u << (n & 31));
-                    r->value[0][n] = low[lane];
-                    r->value[1][n] = high[lane];
-                }
-            }
+            list[n++] = (uint16_t)(base + tyni_ctz32(bits));
+        for (; n >= v_n || (n && base + 32 >= end); n -= tyni_mini(n, v_n)) {
+            TYNI_V(pixel_look)(p, r, sector, list, tyni_mini(n, v_n));
+            for (int32_t k = v_n; k < n; k++)
+                list[k - v_n] = list[k];
         }
     }
 }
