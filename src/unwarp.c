@@ -117,9 +117,8 @@ static void unwarp_sector(const tyni_pass *p, const tyni_run *r, const tyni_sect
 {
     const int32_t isa = p->context->config.isa;
     const tyni_tile *ready = NULL;
-    /* samples on each column or row of pixels, and one threshold for all */
-    const int plain =
-        TYNI_CHAINS > 3 && TYNI_LANES_WIDE(isa) && p->slices.stride == 1 && tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL;
+    /* one threshold for all */
+    const int plain = TYNI_CHAINS > 3 && TYNI_LANES_WIDE(isa) && tyni_view_kind(p->lamp) == TYN_LIGHT_DIRECTIONAL;
     if (s->count < 2)
         return; /* no slices at all */
     TYNI_LANES_CALL(isa, pixel_places, (p, r, s, first, end));

@@ -272,12 +272,14 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_unwarp)(const tyni_pass *p,
     }
 }
 
-/* Two vectors of pixels from i on whose samples lie on their own column or row, in the light of a sun: the usual ones. Each is
- * a chain of operations that wait for one another, and what a core looks ahead is hardly longer; so they go step by step. */
+/* Two vectors of pixels in the light of a sun, the usual ones. Each is a chain of operations that wait for one another, and
+ * what a core looks ahead is hardly longer; so they go step by step. */
 typedef struct TYNI_V(pixel_pair) {
     v_float at[2], f[2], scale[2][2][2]; /* of a vector, its line, and low or high */
+    v_float along[2];                    /* the way to the next sample */
     v_int place[2], entry[2][2];         /* of a vector and its line */
-    int32_t low[2], span[2];
+    v_int sample[2];                     /* where lines run along x: from the vector's first on */
+    int32_t low[2], span[2], base[2];
 } TYNI_V(pixel_pair);
 
 /* pixel_between_lines of both; 0: for one of them lines are too many. */
@@ -303,16 +305,44 @@ TYNI_V_INLINE int TYNI_V(pixel_pair_lines)(float *const scales[2], const float *
     return 1;
 }
 
-/* pixel_along of both. */
-TYNI_V_INLINE void TYNI_V(pixel_pair_along)(const tyni_field *f, int32_t base, TYNI_V(pixel_pair) * q)
+/* Samples of both where lines run along x, of pixels from column x on; 0: the last lie beyond the line. */
+TYNI_V_INLINE int TYNI_V(pixel_pair_samples)(int32_t x, int32_t shift, int32_t pitch, TYNI_V(pixel_pair) * q)
+{
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 2; n++) {
+        const v_int column = v_iadd(v_iset(x + n * v_n), v_index());
+        q->base[n] = (x + n * v_n) >> shift;
+        q->sample[n] = v_isub(v_shr(column, shift), v_iset(q->base[n]));
+        q->along[n] = v_to_float(v_iand(column, v_iset((1 << shift) - 1))) * (1.0f / (float)(1 << shift));
+    }
+    return (x + 2 * v_n - 1) >> shift < pitch - (shift > 0);
+}
+
+/* Entries of both where lines run along y, at a row of the tile. */
+TYNI_V_INLINE void TYNI_V(pixel_pair_down)(const uint32_t *row, TYNI_V(pixel_pair) * q)
+{
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 4; n++)
+        q->entry[n >> 1][n & 1] = v_ipick(row + q->low[n >> 1] + (n & 1), q->place[n >> 1]);
+}
+
+/* What pixels of a vector have on a line, from its first sample on: what lies behind that of the last is not theirs, and may be
+ * the next line's or what is behind the last line (frame.c). */
+TYNI_V_INLINE v_int TYNI_V(pixel_pair_read)(const uint32_t *row, v_int sample, int32_t shift)
+{
+    return shift ? v_ipick(row, sample) : v_iload(row);
+}
+
+/* pixel_along of both, `next` samples on. */
+TYNI_V_INLINE void TYNI_V(pixel_pair_along)(const tyni_field *f, int32_t shift, int32_t next, TYNI_V(pixel_pair) * q)
 {
     const int32_t span = tyni_maxi(q->span[0], q->span[1]);
     const uint32_t *row[2];
     v_int one[2];
     TYNI_UNROLL
     for (int32_t n = 0; n < 2; n++) {
-        row[n] = f->entries + (ptrdiff_t)q->low[n] * f->pitch + base + n * v_n;
-        one[n] = q->entry[n][0] = q->entry[n][1] = v_iload(row[n]);
+        row[n] = f->entries + (ptrdiff_t)q->low[n] * f->pitch + q->base[n] + next;
+        one[n] = q->entry[n][0] = q->entry[n][1] = TYNI_V(pixel_pair_read)(row[n], q->sample[n], shift);
     }
     for (int32_t k = 0; k <= span; k += 4) {
         TYNI_UNROLL
@@ -322,15 +352,16 @@ TYNI_V_INLINE void TYNI_V(pixel_pair_along)(const tyni_field *f, int32_t base, T
                 const v_mask here = v_ieq(q->place[n], v_iset(k + j));
                 row[n] += k + j <= q->span[n] ? f->pitch : 0;
                 q->entry[n][0] = v_iselect(here, one[n], q->entry[n][0]);
-                one[n] = v_iload(row[n]);
+                one[n] = TYNI_V(pixel_pair_read)(row[n], q->sample[n], shift);
                 q->entry[n][1] = v_iselect(here, one[n], q->entry[n][1]);
             }
         }
     }
 }
 
-/* pixel_taps of both, and what they add up to. */
-TYNI_V_INLINE void TYNI_V(pixel_pair_taps)(const TYNI_V(pixel_pair) * q, float threshold, TYNI_V(pixel_sum) s[2])
+/* pixel_taps of both. part: of the pixel, this sample's; NULL: all of it. more: add to what there is. */
+TYNI_V_INLINE void TYNI_V(pixel_pair_taps)(const TYNI_V(pixel_pair) * q, float threshold, const v_float *part, int more,
+                                           TYNI_V(pixel_sum) s[2])
 {
     const v_int ten = v_iset(1023);
     v_float off[4], limit[4], weight[4];
@@ -344,6 +375,8 @@ TYNI_V_INLINE void TYNI_V(pixel_pair_taps)(const TYNI_V(pixel_pair) * q, float t
         weight[n] = q->f[n >> 1];
         if (!(n & 1))
             weight[n] = 1.0f - weight[n];
+        if (part)
+            weight[n] = weight[n] * part[n >> 1];
         weight[n] = v_select(v_ieq(code, v_iset(0)), v_set(0.0f), weight[n]);
         near = v_mand(near, v_le(off[n], limit[n]));
     }
@@ -365,9 +398,40 @@ TYNI_V_INLINE void TYNI_V(pixel_pair_taps)(const TYNI_V(pixel_pair) * q, float t
             low[side] = weight[2 * n + side] * (low[side] * low[side] * q->scale[n][side][0]);
             high[side] = weight[2 * n + side] * (high[side] * high[side] * q->scale[n][side][1]);
         }
+        if (more) {
+            weight[2 * n] = s[n].weight + weight[2 * n];
+            low[0] = s[n].low + low[0];
+            high[0] = s[n].high + high[0];
+        }
         s[n].weight = weight[2 * n] + weight[2 * n + 1];
         s[n].low = low[0] + low[1];
         s[n].high = high[0] + high[1];
+    }
+}
+
+/* The taps of both at their sample, or at both samples beside them. t: NULL where lines run along x; y: the row. */
+TYNI_V_INLINE void TYNI_V(pixel_pair_gather)(const tyni_field *f, const tyni_tile *t, int32_t y, int32_t shift,
+                                             TYNI_V(pixel_pair) * q, TYNI_V(pixel_sum) s[2])
+{
+    const int32_t beyond = y & ((1 << shift) - 1), both = t ? beyond : shift, row = t ? (y >> shift) - t->sample : 0;
+    v_float part[2];
+    TYNI_UNROLL
+    for (int32_t n = 0; n < 2; n++) {
+        if (t)
+            q->along[n] = v_set((float)beyond) * (1.0f / (float)(1 << shift));
+        part[n] = 1.0f - q->along[n];
+    }
+    if (t)
+        TYNI_V(pixel_pair_down)(t->row[row] - t->low, q);
+    else
+        TYNI_V(pixel_pair_along)(f, shift, 0, q);
+    TYNI_V(pixel_pair_taps)(q, f->threshold, both ? part : NULL, 0, s);
+    if (both) {
+        if (t)
+            TYNI_V(pixel_pair_down)(t->row[tyni_mini(row + 1, f->pitch - 1 - t->sample)] - t->low, q);
+        else
+            TYNI_V(pixel_pair_along)(f, shift, 1, q);
+        TYNI_V(pixel_pair_taps)(q, f->threshold, q->along, 1, s);
     }
 }
 
@@ -377,11 +441,13 @@ static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni
                                                                       const tyni_sector *sector, const tyni_tile *t,
                                                                       int32_t first, int32_t end)
 {
+    const int32_t shift = shift_of(&p->slices);
     int32_t i = first;
     for (; v_n > 1 && (t || !sector->along_y) && end - i >= 2 * v_n; i += 2 * v_n) {
         TYNI_V(pixel_pair) q;
         TYNI_V(pixel_sum) s[2];
         v_mask wanted[2];
+        const int inside = TYNI_V(pixel_pair_samples)(r->x + i, shift, p->lines.pitch, &q);
         if (!TYNI_V(pixel_pair_lines)(p->lines.scales, r->value[0] + i, sector->start, sector->count - 2, &q))
             break;
         TYNI_UNROLL
@@ -391,19 +457,16 @@ static TYNI_V_TARGET TYNI_NOINLINE int32_t TYNI_V(pixel_unwarp_pairs)(const tyni
             q.at[n] = v_max(to * v_load(r->nearness + i + n * v_n), v_set(TYNI_ENTRY_NEAREST));
         }
         if (t) {
-            const uint32_t *row = t->row[r->y - t->sample] - t->low;
             const int32_t low = tyni_mini(q.low[0], q.low[1]), high = tyni_maxi(q.low[0] + q.span[0], q.low[1] + q.span[1]) + 1;
             if (low < t->low || high >= t->low + t->count)
                 break;
-            TYNI_UNROLL
-            for (int32_t n = 0; n < 4; n++)
-                q.entry[n >> 1][n & 1] = v_ipick(row + q.low[n >> 1] + (n & 1), q.place[n >> 1]);
-        } else {
-            if (r->x + i + 2 * v_n > p->lines.pitch)
-                break;
-            TYNI_V(pixel_pair_along)(&p->lines, r->x + i, &q);
+        } else if (!inside) {
+            break;
         }
-        TYNI_V(pixel_pair_taps)(&q, p->lines.threshold, s);
+        if (shift)
+            TYNI_V(pixel_pair_gather)(&p->lines, t, r->y, shift, &q, s);
+        else /* the same, known beforehand */
+            TYNI_V(pixel_pair_gather)(&p->lines, t, r->y, 0, &q, s);
         TYNI_UNROLL
         for (int32_t n = 0; n < 2; n++) {
             const v_mask fits = v_mand(wanted[n], v_gt(s[n].weight, v_set(TYNI_GATHER_ENOUGH)));
