@@ -358,6 +358,14 @@ TYNI_AVX512_OP int32_t tyni_avx512_pack64(uint16_t *out, const uint16_t *from, u
     return n;
 }
 
+TYNI_AVX512_OP float tyni_avx512_halves(__m512 x)
+{
+    const __m256 eight = _mm256_add_ps(_mm512_castps512_ps256(x), _mm512_extractf32x8_ps(x, 1));
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
+    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+
 TYNI_AVX512_OP void tyni_avx512_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
 {
     __m256i s0 = _mm256_setzero_si256(), s1 = s0, s2 = s0, s3 = s0, low, high;

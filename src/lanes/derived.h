@@ -125,13 +125,17 @@ TYNI_V_INLINE void v_store_rgba8_n(uint8_t *p, v_int r, v_int g, v_int b, v_int 
 
 TYNI_V_INLINE float v_sum16(const v_float *part)
 {
-    float all[16];
-    for (int32_t i = 0; i < 16; i += v_n)
-        v_store(all + i, part[i / v_n]);
-    for (int32_t half = 8; half; half /= 2)
-        for (int32_t i = 0; i < half; i++)
-            all[i] += all[i + half];
-    return all[0];
+    v_float half[16 / v_n];
+    TYNI_UNROLL_MORE
+    for (int32_t i = 0; i < 16 / v_n; i++)
+        half[i] = part[i];
+    TYNI_UNROLL
+    for (int32_t n = 8 / v_n; n; n /= 2) {
+        TYNI_UNROLL_MORE
+        for (int32_t i = 0; i < n; i++)
+            half[i] = half[i] + half[i + n];
+    }
+    return TYNI_V(halves)(half[0]);
 }
 TYNI_V_INLINE float v_hmin(v_float x)
 {

@@ -338,6 +338,12 @@ TYNI_NEON_OP int32_t tyni_neon_pack64(uint16_t *out, const uint16_t *from, uint6
     return tyni_scalar_pack64(out, from, bits);
 }
 
+TYNI_NEON_OP float tyni_neon_halves(float32x4_t x)
+{
+    const float32x2_t two = vadd_f32(vget_low_f32(x), vget_high_f32(x));
+    return vget_lane_f32(two, 0) + vget_lane_f32(two, 1);
+}
+
 TYNI_NEON_OP void tyni_neon_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
 {
     for (int32_t k = 0; k < 4; k++) {

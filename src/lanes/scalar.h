@@ -321,6 +321,12 @@ TYNI_SCALAR_OP int32_t tyni_scalar_pack64(uint16_t *out, const uint16_t *from, u
     return tyni_ones32((uint32_t)bits) + tyni_ones32((uint32_t)(bits >> 32));
 }
 
+/* The lanes' sum: of halves, then of their halves. */
+TYNI_SCALAR_OP float tyni_scalar_halves(float x)
+{
+    return x;
+}
+
 TYNI_SCALAR_OP void tyni_scalar_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
 {
     for (int32_t k = 0; k < 4; k++) {

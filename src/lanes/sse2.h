@@ -349,6 +349,12 @@ TYNI_SSE2_OP int32_t tyni_sse2_pack64(uint16_t *out, const uint16_t *from, uint6
     return tyni_scalar_pack64(out, from, bits);
 }
 
+TYNI_SSE2_OP float tyni_sse2_halves(__m128 x)
+{
+    const __m128 two = _mm_add_ps(x, _mm_movehl_ps(x, x));
+    return _mm_cvtss_f32(_mm_add_ss(two, _mm_shuffle_ps(two, two, 1)));
+}
+
 TYNI_SSE2_OP void tyni_sse2_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
 {
     __m128i sum[4], low, high;

@@ -327,6 +327,13 @@ TYNI_WASM_OP int32_t tyni_wasm_pack64(uint16_t *out, const uint16_t *from, uint6
     return tyni_scalar_pack64(out, from, bits);
 }
 
+TYNI_WASM_OP float tyni_wasm_halves(tyni_wasm_float x)
+{
+    float all[4];
+    tyni_wasm_store(all, x);
+    return (all[0] + all[2]) + (all[1] + all[3]);
+}
+
 TYNI_WASM_OP void tyni_wasm_dots8(const int16_t *a, const int8_t *const b[4], int32_t n, int32_t *out)
 {
     for (int32_t k = 0; k < 4; k++) {
