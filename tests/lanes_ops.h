@@ -314,6 +314,11 @@ static TYNI_V_TARGET uint32_t TYNI_V(test_word)(const uint16_t *t, uint32_t posi
     return v_above16(t, position);
 }
 
+static TYNI_V_TARGET uint64_t TYNI_V(test_words)(const uint16_t *t, uint32_t position)
+{
+    return v_above64(t, position);
+}
+
 static TYNI_V_TARGET int32_t TYNI_V(test_pack)(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
     return v_pack64(out, from, bits);

@@ -198,14 +198,16 @@ static void test_words(int32_t isa)
     if (!begin("thresholds to words", isa))
         return;
     for (int round = 0; round < 2000; round++) {
-        uint16_t t[32];
-        uint32_t position = round % 3 ? test_random() & 0xffffu : extreme[test_random() % 7], word = 0;
-        for (int i = 0; i < 32; i++) {
+        uint16_t t[64];
+        uint32_t position = round % 3 ? test_random() & 0xffffu : extreme[test_random() % 7];
+        uint64_t words = 0;
+        for (int i = 0; i < 64; i++) {
             t[i] = (uint16_t)(test_random() % 3 ? test_random() : test_random() % 2 ? position : extreme[test_random() % 7]);
-            word |= (uint32_t)(position < t[i]) << i;
+            words |= (uint64_t)(position < t[i]) << i;
         }
-        CHECK(TYNI_LANES_CALL(isa, test_word, (t, position)) == word);
-        CHECK(TYNI_LANES_CALL(isa, test_unword, (word)) == 0);
+        CHECK(TYNI_LANES_CALL(isa, test_word, (t, position)) == (uint32_t)words);
+        CHECK(TYNI_LANES_CALL(isa, test_words, (t, position)) == words);
+        CHECK(TYNI_LANES_CALL(isa, test_unword, ((uint32_t)words)) == 0);
     }
 }
 
