@@ -198,7 +198,7 @@ static void test_words(int32_t isa)
     if (!begin("thresholds to words", isa))
         return;
     for (int round = 0; round < 2000; round++) {
-        uint16_t t[64];
+        uint16_t t[64] = {0};
         uint32_t position = round % 3 ? test_random() & 0xffffu : extreme[test_random() % 7];
         uint64_t words = 0;
         for (int i = 0; i < 64; i++) {

@@ -275,13 +275,13 @@ TYNI_AVX2_OP __m256 tyni_avx2_gather(const float *base, __m256i index)
 TYNI_AVX2_OP __m256i tyni_avx2_words_of(const uint16_t *table, const uint8_t *p)
 {
     __m128i x = _mm_cvtsi32_si128(table[p[0]]);
-    x = _mm_insert_epi16(x, table[p[4]], 1);
-    x = _mm_insert_epi16(x, table[p[8]], 2);
-    x = _mm_insert_epi16(x, table[p[12]], 3);
-    x = _mm_insert_epi16(x, table[p[16]], 4);
-    x = _mm_insert_epi16(x, table[p[20]], 5);
-    x = _mm_insert_epi16(x, table[p[24]], 6);
-    x = _mm_insert_epi16(x, table[p[28]], 7);
+    x = _mm_insert_epi16(x, (int16_t)table[p[4]], 1);
+    x = _mm_insert_epi16(x, (int16_t)table[p[8]], 2);
+    x = _mm_insert_epi16(x, (int16_t)table[p[12]], 3);
+    x = _mm_insert_epi16(x, (int16_t)table[p[16]], 4);
+    x = _mm_insert_epi16(x, (int16_t)table[p[20]], 5);
+    x = _mm_insert_epi16(x, (int16_t)table[p[24]], 6);
+    x = _mm_insert_epi16(x, (int16_t)table[p[28]], 7);
     return _mm256_cvtepu16_epi32(x);
 }
 TYNI_AVX2_OP void tyni_avx2_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], __m256i out[3])

@@ -271,9 +271,9 @@ TYNI_SSE2_OP __m128 tyni_sse2_gather(const float *base, __m128i index)
 TYNI_SSE2_OP __m128i tyni_sse2_words_of(const uint16_t *table, const uint8_t *p)
 {
     __m128i x = _mm_cvtsi32_si128(table[p[0]]);
-    x = _mm_insert_epi16(x, table[p[4]], 2);
-    x = _mm_insert_epi16(x, table[p[8]], 4);
-    return _mm_insert_epi16(x, table[p[12]], 6);
+    x = _mm_insert_epi16(x, (int16_t)table[p[4]], 2);
+    x = _mm_insert_epi16(x, (int16_t)table[p[8]], 4);
+    return _mm_insert_epi16(x, (int16_t)table[p[12]], 6);
 }
 TYNI_SSE2_OP void tyni_sse2_rgb_words(const uint16_t *table, const uint8_t *p, const int32_t byte[3], __m128i out[3])
 {
