@@ -172,21 +172,31 @@ static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, con
     return a;
 }
 
-int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, int32_t isa, float *const value[3],
-                           int32_t values, int32_t first, int32_t last, float tolerance)
+/* About each that is fresh. */
+static void refine_about(uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks, float *const value[3], int32_t values,
+                         int32_t first, int32_t last, float tolerance)
 {
-    const int32_t words = tyni_sample_words(last + 1), from = first >> 5;
-    const int all = memcmp(fresh + from, rays + from, sizeof *rays * (size_t)(words - from)) == 0;
-    int32_t count = 0;
-    if (all && TYNI_LANES_WIDE(isa))
-        TYNI_LANES_CALL(isa, sample_bends, (fresh, rays, breaks, value, values, first, last, tolerance));
-    for (int32_t j = all && TYNI_LANES_WIDE(isa) ? last + 1 : tyni_sample_next(fresh, first, last); j <= last;) {
+    for (int32_t j = tyni_sample_next(fresh, first, last); j <= last;) {
         int32_t a = previous(rays, previous(rays, j, first), first);
         a = refine_from(a, fresh, rays, breaks, value, values, last, tolerance);
         do /* the next one that is fresh */
             j = a = tyni_sample_next(fresh, a + 1, last);
         while (j <= last && !tyni_sample_bit(rays, j));
     }
+}
+
+int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, int32_t isa, float *const value[3],
+                           int32_t values, int32_t first, int32_t last, float tolerance)
+{
+    const int32_t words = tyni_sample_words(last + 1);
+    uint32_t stale = 0;
+    int32_t count = 0;
+    for (int32_t w = first >> 5; w < words; w++)
+        stale |= rays[w] & ~fresh[w];
+    if (TYNI_LANES_WIDE(isa) && !stale)
+        TYNI_LANES_CALL(isa, sample_bends, (fresh, rays, breaks, value, values, first, last, tolerance));
+    else
+        refine_about(fresh, rays, breaks, value, values, first, last, tolerance);
     for (int32_t w = 0; w < words; w++) {
         fresh[w] &= ~rays[w];
         if (!fresh[w])
