@@ -7,9 +7,10 @@
 
 #define TYNI_COLOUR_FORMATS (1u << TYN_RGB_F32 | 1u << TYN_RGBA8_SRGB | 1u << TYN_BGRA8_SRGB | 1u << TYN_RGB565_SRGB)
 
-/* sRGB decoding of a byte, in units of linear light: to a fortieth of a step of the byte, and 1 is 1. */
-#define TYNI_COMPOSITE_UNIT (1.0f / 62597.0f)
+/* sRGB decoding of a byte: 65535 times the root of the linear value, which keeps it to a 300th of a step of the byte. Dithering
+ * tells a 128th apart, and what no light touches is to come back as it was. */
 extern const uint16_t tyni_composite_srgb[256];
+#define TYNI_COMPOSITE_ROOT (1.0f / 65535.0f)
 
 /* 256 times the encoded level, 0 .. 255, by 1023 times the root of a linear value. */
 extern const uint16_t tyni_composite_curve[1024];

@@ -6,8 +6,10 @@ TYNI_V_INLINE void TYNI_V(format_decode)(const uint8_t *p, const int32_t byte[3]
     v_int word[3];
     v_rgb_words(tyni_composite_srgb, p, byte, word);
     TYNI_UNROLL
-    for (int32_t c = 0; c < 3; c++)
-        rgb[c] = v_to_float(word[c]) * TYNI_COMPOSITE_UNIT;
+    for (int32_t c = 0; c < 3; c++) {
+        const v_float root = v_to_float(word[c]) * TYNI_COMPOSITE_ROOT;
+        rgb[c] = root * root;
+    }
 }
 
 /* Up to v_n pixels from p on, n of them there. */

@@ -95,8 +95,10 @@ void tyni_quad_begin(const tyni_pass *p)
         tyni_pass_scratch(p->context, w, &s);
         fade = (void *)s.bundle;
         decode = (void *)s.row;
-        for (int32_t i = 0; i < 256; i++)
-            decode[i] = q.gain * ((float)tyni_composite_srgb[i] * TYNI_COMPOSITE_UNIT);
+        for (int32_t i = 0; i < 256; i++) {
+            const float root = (float)tyni_composite_srgb[i] * TYNI_COMPOSITE_ROOT;
+            decode[i] = q.gain * (root * root);
+        }
         for (int32_t i = 0; i < TYNI_QUADS_FADES; i++)
             for (int32_t c = 0; c < 3; c++)
                 fade[i][c] = fade_of(-q.falls[c] * tyni_bits_float((uint32_t)(q.base + i) << TYNI_QUADS_FADE_BITS));

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "composite.h"
 #include "guard.h"
 #include "rig.h"
 #include "stock.h"
@@ -535,6 +536,75 @@ static void test_dither(void)
     }
 }
 
+/* Black and white are whole in every format, whatever is added to tell steps apart, and so is what is brighter. */
+static void test_ends(void)
+{
+    static const tyn_format formats[] = {TYN_RGBA8_SRGB, TYN_BGRA8_SRGB, TYN_RGB565_SRGB};
+    static const float values[] = {0, 1, 1e9f};
+    TEST("black and white under dither");
+    for (int f = 0; f < 3; f++)
+        for (int v = 0; v < 3; v++) {
+            float linear[3 * 64];
+            uint8_t bytes[4 * 64];
+            tyn_image from = {linear, 8, 8, 0, TYN_RGB_F32}, to = {bytes, 8, 8, 0, formats[f]};
+            tyn_display display = {1, TYN_TONE_CLAMP, 1};
+            for (int i = 0; i < 3 * 64; i++)
+                linear[i] = values[v];
+            CHECK(tyn_encode(&from, &display, &to) == TYN_OK);
+            for (int i = 0; i < 64 * tyn_format_bytes(formats[f]); i++)
+                CHECK(bytes[i] == (v ? 255 : 0) || (f < 2 && i % 4 == 3 && bytes[i] == 255));
+        }
+}
+
+/* Each byte means what the standard says, to a 300th of a step of it. */
+static void test_decode(void)
+{
+    TEST("bytes of sRGB");
+    for (int i = 0; i < 256; i++) {
+        double root = (double)((float)tyni_composite_srgb[i] * TYNI_COMPOSITE_ROOT), x = i / 255.0;
+        CHECK_NEAR(255 * srgb(root * root), i, 0.0034);
+        CHECK_NEAR(root * root, x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4), 1e-4 * root + 1e-6);
+    }
+}
+
+/* What no light touches comes back as it was, dithered or not. */
+static void test_untouched(void)
+{
+    enum { W = 64, H = 32 };
+    static float depth[W * H];
+    static uint8_t colour[4 * W * H], target[4 * W * H];
+    static uint8_t block[(1 << 20) + TYN_ALIGNMENT];
+    uint8_t *aligned = block + (TYN_ALIGNMENT - (uintptr_t)block % TYN_ALIGNMENT);
+    static const float from[3] = {0, 0, 0}, to[3] = {0, 0, -1}, up[3] = {0, 1, 0};
+    TEST("pixels without air are as they were");
+    for (int i = 0; i < W * H; i++) {
+        depth[i] = 5;
+        for (int c = 0; c < 4; c++)
+            colour[4 * i + c] = (uint8_t)(c == 3 ? 255 : (i / 8 + 64 * c) & 255); /* each byte under each place of the dither */
+    }
+    for (int n = 0; n < 4; n++) {
+        tyn_config config;
+        tyn_context *context;
+        tyn_frame frame;
+        CHECK(tyn_config_preset(&config, TYN_PRESET_HANDHELD, W, H) == TYN_OK);
+        config.quads = 0;
+        config.isa = n & 2 ? TYN_ISA_SCALAR : 0;
+        CHECK(tyn_init(&context, &config, aligned, 1 << 20) == TYN_OK);
+        memset(&frame, 0, sizeof frame);
+        CHECK(tyn_camera_look(&frame.camera, from, to, up, 1, 0.1f, 100, W, H) == TYN_OK);
+        frame.depth.pixels = depth;
+        frame.colour.pixels = colour;
+        frame.target.pixels = target;
+        frame.depth.width = frame.colour.width = frame.target.width = W;
+        frame.depth.height = frame.colour.height = frame.target.height = H;
+        frame.depth.format = TYN_DEPTH_F32;
+        frame.colour.format = frame.target.format = TYN_RGBA8_SRGB;
+        frame.display.dither = n & 1;
+        CHECK(tyn_render(context, &frame) == TYN_OK);
+        CHECK(memcmp(colour, target, sizeof target) == 0);
+    }
+}
+
 void test_api(void)
 {
     test_names();
@@ -548,4 +618,7 @@ void test_api(void)
     test_encode();
     test_encode_values();
     test_dither();
+    test_ends();
+    test_decode();
+    test_untouched();
 }
