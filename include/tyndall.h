@@ -422,7 +422,7 @@ typedef enum tyn_paper {
 /* How a ray finds its lit intervals. In slices, all but the fixed steps read the slice's row of thresholds and give the same
  * bytes; where a ray has no row (march, subsample, rejected pixels) they are an exact walk over the map's texels. */
 typedef enum tyn_rays {
-    TYN_RAYS_WORDS = 0,  /* compares packed into words of 32 columns, transitions by bit scans */
+    TYN_RAYS_WORDS = 0,  /* compares packed into words of 32 or 64 columns, transitions by their bits */
     TYN_RAYS_STEPS = 1,  /* fixed steps inside the light's frustum, sampled in the middle of each (ED10) */
     TYN_RAYS_TREE = 2,   /* a 1D min/max tree over the row (IVB section 6.4) */
     TYN_RAYS_SWEEP = 3,  /* words that are kept while the slice's rays are taken in order: no compares, for machines without
@@ -432,7 +432,8 @@ typedef enum tyn_rays {
 
 /* How lines lie on the screen and how pixels are put together from them. */
 typedef enum tyn_gather {
-    TYN_GATHER_SHEAR = 0, /* tyndall's: samples on pixel columns or rows, lines only where the screen shows them, 2 taps */
+    TYN_GATHER_SHEAR = 0, /* tyndall's: samples on pixel columns or rows, lines only where the screen shows them, 2 taps; in a
+                             sun's light, where none fits, those beside them and on the next outer lines */
     TYN_GATHER_IVB = 1,   /* equidistant border points, short lines stretched; 2 lines x 2 samples, bilateral (IVB section 6) */
     TYN_GATHER_ED10 = 2   /* equidistant border points; 3 to 5 taps on each of 2 lines, bilateral, and the next outer line where
                              none fits (ED10 section 4.3) */

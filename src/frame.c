@@ -180,6 +180,7 @@ tyn_status tyni_frame_render(tyn_context *context, const tyn_frame *frame)
 static void place_field(tyni_field *field, tyni_arena *arena, size_t lines, size_t pitch, int textured)
 {
     field->pitch = (int32_t)pitch;
+    /* followed by the scales: a vector may be read behind the last line */
     field->entries = tyni_arena_take(arena, lines * pitch, sizeof *field->entries);
     field->thirds = textured ? tyni_arena_take(arena, lines * pitch, sizeof *field->thirds) : NULL;
     for (int32_t i = 0; i < 3; i++)

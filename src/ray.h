@@ -45,9 +45,12 @@ int tyni_ray_columns(const tyni_row *row, const tyni_piece *piece, const tyni_in
 /* ---- many rays of a white sun at once ---- */
 
 #define TYNI_RAY_BUNDLE 16 /* rays, a whole vector of the widest ISA */
-#define TYNI_RAY_EDGES                                                                                                         \
-    38 /* edges of a ray at a time: there it goes into the light or out of it. Even: then it is back outside */
+/* Edges of a ray at a time: there it goes into the light or out of it. An even number: then it is back outside. */
+#define TYNI_RAY_EDGES 38
 #define TYNI_RAY_SPARE 64 /* behind them, for who writes more than there are */
+
+/* Columns, the one behind the last too, and samples fit 16 bits. */
+typedef char ray_columns_fit[2 * (TYN_MAX_SHADOW + 4) <= 65535 && TYN_MAX_SIZE <= 65536 ? 1 : -1];
 
 /* All zeros before its first use: where rays have fewer edges than their neighbours, what is there is read and dropped.
  * Rays from t = 0 to `to`; all arrays are per ray. */

@@ -108,7 +108,7 @@ static int ends_begin(ends *e, const tyni_piece *piece, const tyni_slice *slice,
 #define TYNI_KERNEL "row_kernel.h"
 #include "lanes/each.h"
 
-typedef char edges_fit[2 * (TYN_MAX_SHADOW + 4) <= TYNI_ROW_END ? 1 : -1];
+typedef char edges_fit[TYN_MAX_SHADOW + 4 <= TYNI_ROW_END ? 1 : -1];
 
 /* Where thresholds and edges are written. */
 typedef struct pen {

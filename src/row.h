@@ -37,10 +37,11 @@ typedef struct tyni_piece {
 #define TYNI_ROW_PIECES 16
 
 typedef struct tyni_row {
-    int32_t count;             /* of pieces; 0: the slice misses all maps */
-    int32_t columns;           /* of all pieces, one after the other */
+    int32_t count;   /* of pieces; 0: the slice misses all maps */
+    int32_t columns; /* of all pieces, one after the other */
+    /* Both are read to the end of a block of 64, up to 63 entries behind the last. */
     const uint16_t *threshold; /* of these; lit for a ray at position q if q < threshold */
-    const uint16_t *edge;      /* where they begin, in units from the piece's step 0; that of 2 k is k */
+    const uint16_t *edge;      /* where they begin, in units; that of 2 k is k steps */
     float p_start, p_scale;    /* position of a ray through p: (p - p_start) * p_scale */
     tyni_piece pieces[TYNI_ROW_PIECES];
 } tyni_row;

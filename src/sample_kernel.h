@@ -67,8 +67,9 @@ static TYNI_V_TARGET void TYNI_V(sample_breaks)(uint32_t *breaks, const float *d
 
 /* Rays in hand, at least; so many more may be. */
 #define RAYS 64
-/* Of a ray's place: a break follows. The rest is samples from the first in hand. Rays are at most 64 samples apart. */
+/* Of a ray's place: a break follows. The rest is samples from the first in hand; a line has no more than pixels. */
 #define BREAK 0x8000
+typedef char TYNI_V(places_fit)[TYN_MAX_SIZE <= BREAK ? 1 : -1];
 
 /* Adds rays from word w on to `place` until there are RAYS or no more. Returns how many; moves w behind them. */
 TYNI_V_INLINE int32_t TYNI_V(sample_list)(const uint32_t *rays, const uint32_t *breaks, int32_t *w, int32_t last, int32_t base,

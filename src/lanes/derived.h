@@ -126,11 +126,12 @@ TYNI_V_INLINE void v_store_rgba8_n(uint8_t *p, v_int r, v_int g, v_int b, v_int 
 TYNI_V_INLINE float v_sum16(const v_float *part)
 {
     v_float half[16 / v_n];
+    half[0] = part[0];
     TYNI_UNROLL_MORE
-    for (int32_t i = 0; i < 16 / v_n; i++)
-        half[i] = part[i];
+    for (int32_t i = 0; i < 8 / v_n; i++)
+        half[i] = part[i] + part[i + 8 / v_n];
     TYNI_UNROLL
-    for (int32_t n = 8 / v_n; n; n /= 2) {
+    for (int32_t n = 4 / v_n; n; n /= 2) {
         TYNI_UNROLL_MORE
         for (int32_t i = 0; i < n; i++)
             half[i] = half[i] + half[i + n];
