@@ -1,8 +1,7 @@
 /* beside_kernel.h - a template, for unwarp.c: pixels that fit no sample at their place look for some beside it, as ED10's taps
  * do, and on the next outer lines (ED10 section 4.3). */
 
-/* Of `open` ones of the pixels in `list`, those that what they looked at tells enough of have their value. Returns the others.
- */
+/* Gives those of the `open` pixels in `list` their value that have seen enough samples that fit. Returns the others. */
 TYNI_V_INLINE v_mask TYNI_V(pixel_settle)(const tyni_run *r, const uint16_t *list, v_mask open, const TYNI_V(pixel_sum) * s)
 {
     const v_mask fits = v_mand(open, v_gt(s->weight, v_set(TYNI_GATHER_ENOUGH)));
@@ -68,7 +67,7 @@ TYNI_V_INLINE void TYNI_V(pixel_look)(const tyni_pass *p, const tyni_run *r, con
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_beside)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector,
                                                              int32_t first, int32_t end)
 {
-    uint16_t list[32 + 16 + 16];
+    uint16_t list[15 + 32 + 16]; /* some that wait, those of a word, and what a vector loads behind the last */
     int32_t n = 0;
     for (int32_t base = first & ~31; base < end; base += 32) {
         uint32_t bits = r->rejected[base >> 5];

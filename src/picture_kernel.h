@@ -54,6 +54,7 @@ TYNI_V_INLINE void TYNI_V(picture_encode)(const tyni_picture *q, const int32_t x
  * what they hand on by planes stays in registers here. */
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(pixel_picture)(const tyni_run *r, const tyni_picture *q)
 {
+    /* a copy is none of what is written */
     const int32_t byte[3] = {q->from_byte[0], q->from_byte[1], q->from_byte[2]};
     for (int32_t i = 0; i < r->count && v_n > 1; i += VECTORS * v_n) { /* one lane has too few registers to gain */
         uint8_t part[VECTORS][4 * v_n];

@@ -81,8 +81,7 @@ TYNI_V_INLINE v_float TYNI_V(ray_dimmed)(v_float x)
     return (1.0f - scale) - f * scale * q;
 }
 
-/* tyni_slice_sight of each ray: its way from the camera; of an orthographic one, where it starts. Returns its length a depth.
- */
+/* tyni_slice_sight of each ray: its way from the camera, or where an orthographic one's starts. Returns its length a depth. */
 TYNI_V_INLINE v_float TYNI_V(ray_way)(const tyni_bundle *b, int32_t i, const tyni_slice *s, const tyni_view *view, v_float v[3])
 {
     const v_float p = s->p0 + v_to_float(v_load_u16(b->sample + i)) * s->dp;

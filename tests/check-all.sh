@@ -63,7 +63,7 @@ check_compilers() {
     else
         skip 'no clang'
     fi
-    variant O0 gcc '-O0 -g' golden isa lanes raster_isa api render ray sample # the rest takes a quarter of an hour without an optimiser
+    variant O0 gcc '-O0 -g' golden isa lanes raster_isa api encode render ray sample # the rest takes a quarter of an hour without an optimiser
     variant O3 gcc '-O3 -march=native'
     variant clang-O3 clang '-O3 -march=native' -accuracy -oracle
     variant plain gcc '-O2 -DTYN_PLAIN_C' golden render workers
@@ -104,7 +104,7 @@ check_valgrind() {
         return
     fi
     if quiet 'valgrind: builds' "$MAKE" -s -j2 B="$B/valgrind" CFLAGS='-O1 -g' "$B/valgrind/tests"; then
-        part valgrind -q --error-exitcode=9 --leak-check=full "$B/valgrind/tests" api render golden
+        part valgrind -q --error-exitcode=9 --leak-check=full "$B/valgrind/tests" api encode render golden
     fi
 }
 

@@ -64,7 +64,7 @@ can() {
 # i386 runs all rooms, as make test does on x86-64. The others, which qemu makes 25 to 100 times slower, run what reads and writes
 # files or packs bits, and one to three slow rooms each: accuracy, art, the doors, fourier, gather, oracle, path, rectify and workers
 # are on x86 alone.
-few=api,border,debug,edges,golden,helpers,lanes,obj,pictures,pool,raster_door,raster_isa,raster_map,raster_slide,sample,scene
+few=api,border,debug,edges,encode,golden,helpers,lanes,obj,pictures,pool,raster_door,raster_isa,raster_map,raster_slide,sample,scene
 rooms() {
     case $1 in
     x86-64) echo $few,isa ;;

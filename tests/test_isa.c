@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "rig.h"
+#include "slice.h"
 #include "stock.h"
 #include "test.h"
 
@@ -79,21 +80,19 @@ static int64_t draw_wide(int32_t isa, const char *name, int stride)
 {
     enum { WIDE = 333, HIGH = 75 };
     static float scatter[3 * WIDE * HIGH];
-    int64_t rejected = 0;
+    int64_t rejected;
     rig *r = rig_stock(name, WIDE, HIGH, 120);
     tyn_config config = rig_config(r, TYN_METHOD_EPIPOLAR, TYN_RAYS_WORDS);
     tyn_frame frame = rig_frame(r);
-    tyn_stats stats;
     config.slices = 64; /* far enough apart that pixels fit none */
-    config.samples = (WIDE - 2 + stride) / stride + 1;
+    config.samples = tyni_slice_points(WIDE, stride);
     config.isa = TYN_ISA_SCALAR;
     CHECK(rig_render(r, &config, &frame) == TYN_OK);
     memcpy(scatter, r->scatter, sizeof scatter);
     config.isa = isa;
-    frame.stats = &stats;
     CHECK(rig_render(r, &config, &frame) == TYN_OK);
     CHECK(memcmp(scatter, r->scatter, sizeof scatter) == 0);
-    rejected = stats.rejected;
+    rejected = r->stats.rejected;
     rig_free(r);
     return rejected;
 }

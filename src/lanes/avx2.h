@@ -330,11 +330,6 @@ TYNI_AVX2_OP uint32_t tyni_avx2_above16(const uint16_t *t, uint32_t position)
     return ~(uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xd8));
 }
 
-TYNI_AVX2_OP uint64_t tyni_avx2_above64(const uint16_t *t, uint32_t position)
-{
-    return tyni_avx2_above16(t, position) | (uint64_t)tyni_avx2_above16(t + 32, position) << 32;
-}
-
 TYNI_AVX2_OP int32_t tyni_avx2_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
     tyni_scalar_list64(out, from, bits);

@@ -335,13 +335,6 @@ TYNI_AVX512_OP uint32_t tyni_avx512_above16(const uint16_t *t, uint32_t position
     return _mm512_cmplt_epu16_mask(_mm512_set1_epi16((int16_t)(uint16_t)position), _mm512_loadu_si512(t));
 }
 
-TYNI_AVX512_OP uint64_t tyni_avx512_above64(const uint16_t *t, uint32_t position)
-{
-    const __m512i p = _mm512_set1_epi16((int16_t)(uint16_t)position);
-    return _cvtmask64_u64(_mm512_kunpackd(_mm512_cmplt_epu16_mask(p, _mm512_loadu_si512(t + 32)),
-                                          _mm512_cmplt_epu16_mask(p, _mm512_loadu_si512(t))));
-}
-
 /* VBMI2's compression, of places, and then a shuffle. */
 TYNI_AVX512_OP int32_t tyni_avx512_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
 {

@@ -121,6 +121,11 @@ TYNI_V_INLINE void v_store_rgba8_n(uint8_t *p, v_int r, v_int g, v_int b, v_int 
     v_istore_n(p, TYNI_V(rgba)(r, g, b, a), n);
 }
 
+TYNI_V_INLINE uint64_t v_above64(const uint16_t *t, uint32_t position)
+{
+    return v_above16(t, position) | (uint64_t)v_above16(t + 32, position) << 32;
+}
+
 /* ---- over lanes ---- */
 
 TYNI_V_INLINE float v_sum16(const v_float *part)

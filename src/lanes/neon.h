@@ -328,11 +328,6 @@ TYNI_NEON_OP uint32_t tyni_neon_above16(const uint16_t *t, uint32_t position)
     return word;
 }
 
-TYNI_NEON_OP uint64_t tyni_neon_above64(const uint16_t *t, uint32_t position)
-{
-    return tyni_neon_above16(t, position) | (uint64_t)tyni_neon_above16(t + 32, position) << 32;
-}
-
 TYNI_NEON_OP int32_t tyni_neon_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
     return tyni_scalar_pack64(out, from, bits);

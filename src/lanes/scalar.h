@@ -287,10 +287,6 @@ TYNI_SCALAR_OP uint32_t tyni_scalar_above16(const uint16_t *t, uint32_t position
     return word;
 }
 
-TYNI_SCALAR_OP uint64_t tyni_scalar_above64(const uint16_t *t, uint32_t position)
-{
-    return tyni_scalar_above16(t, position) | (uint64_t)tyni_scalar_above16(t + 32, position) << 32;
-}
 /* The lowest bit that is set; x != 0. */
 TYNI_SCALAR_OP int32_t tyni_scalar_ctz64(uint64_t x)
 {

@@ -339,11 +339,6 @@ TYNI_SSE2_OP uint32_t tyni_sse2_above16(const uint16_t *t, uint32_t position)
     return ~below;
 }
 
-TYNI_SSE2_OP uint64_t tyni_sse2_above64(const uint16_t *t, uint32_t position)
-{
-    return tyni_sse2_above16(t, position) | (uint64_t)tyni_sse2_above16(t + 32, position) << 32;
-}
-
 TYNI_SSE2_OP int32_t tyni_sse2_pack64(uint16_t *out, const uint16_t *from, uint64_t bits)
 {
     return tyni_scalar_pack64(out, from, bits);
