@@ -521,7 +521,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
      (size_t)(workers) * (TYN_ROW_BYTES + TYN_BUNDLE_BYTES + 2 * TYNI_BYTES((size_t)(maps) * ((size_t)(shadow_size) + 4), 4) + \
                           TYNI_BYTES((2 * (size_t)(maps) * ((size_t)(shadow_size) + 4) + 63) / 64, 4) +                        \
                           4 * TYNI_BYTES(TYNI_SAMPLES(width, height, samples), 4) +                                            \
-                          11 * TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4) +                                 \
+                          TYNI_PLANES(TYNI_BYTES(TYNI_RUN(TYNI_SAMPLES(width, height, samples)), 4)) +                         \
                           3 * TYNI_BYTES((TYNI_SAMPLES(width, height, samples) + 31) / 32, 4) + TYN_STATS_BYTES))
 /* More, with TYN_RAYS_TREE, with TYN_RAYS_SWEEP, with TYN_GATHER_IVB or _ED10, and with downscale. */
 #define TYN_MEMORY_TREE(shadow_size, maps, workers)                                                                            \
@@ -558,6 +558,8 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_BUNDLE_BYTES 2176
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_RUN(samples) ((size_t)((samples) < 1024 ? ((samples) + 1) / 2 : 512))
+#define TYNI_PLANES(bytes) (11 * (bytes) > TYN_PLANES_BYTES ? 11 * (bytes) : TYN_PLANES_BYTES)
+#define TYN_PLANES_BYTES 1792
 #define TYNI_LONGER(width, height) ((width) > (height) ? (width) : (height))
 #define TYNI_SAMPLES(width, height, samples)                                                                                   \
     ((size_t)((samples) < TYNI_LONGER(width, height) ? (samples) : TYNI_LONGER(width, height)))

@@ -19,7 +19,7 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
 {
     tyni_arena arena = {NULL, 0, 0};
     size_t samples = (size_t)c->samples, points = (size_t)c->points, words = (size_t)tyni_sample_words(c->samples);
-    size_t columns = 2 * tyni_row_room(c->config.shadow_size, c->config.maps);
+    size_t columns = 2 * tyni_row_room(c->config.shadow_size, c->config.maps), run = (size_t)tyni_pass_run(c);
     arena.block = c->scratch ? c->scratch + c->scratch_bytes * (size_t)worker : NULL;
     memset(s, 0, sizeof *s);
     s->row = tyni_arena_take(&arena, 1, TYN_ROW_BYTES);
@@ -30,9 +30,9 @@ size_t tyni_pass_scratch(const tyn_context *c, int32_t worker, tyni_scratch *s)
     s->depth = tyni_arena_take(&arena, points, sizeof *s->depth);
     for (int32_t i = 0; i < 3; i++)
         s->value[i] = tyni_arena_take(&arena, points, sizeof *s->value[i]);
-    for (int32_t i = 0; i < TYNI_PASS_PLANES; i++)
-        s->plane[i] = tyni_arena_take(&arena, (size_t)tyni_pass_run(c), sizeof *s->plane[i]);
-    s->bundle = tyni_arena_take(&arena, 1, TYN_BUNDLE_BYTES);
+    s->bundle = tyni_arena_take(&arena, 1, TYN_BUNDLE_BYTES + TYNI_PLANES(run * sizeof *s->plane[0]));
+    for (size_t i = 0; i < TYNI_PASS_PLANES && s->bundle; i++)
+        s->plane[i] = (float *)(void *)((uint8_t *)s->bundle + TYN_BUNDLE_BYTES) + i * run;
     s->breaks = tyni_arena_take(&arena, words, sizeof *s->breaks);
     s->rays = tyni_arena_take(&arena, words, sizeof *s->rays);
     s->fresh = tyni_arena_take(&arena, words, sizeof *s->fresh);

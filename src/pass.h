@@ -28,8 +28,8 @@ typedef struct tyni_scratch {
     tyni_blocks blocks;              /* of the thresholds */
     float *depth;                    /* points */
     float *value[3];                 /* points: visibility */
+    tyni_bundle *bundle;             /* rays side by side, for slices: TYN_BUNDLE_BYTES, and what the planes have behind it */
     float *plane[TYNI_PASS_PLANES];  /* tyni_pass_run each, for pixels */
-    tyni_bundle *bundle;             /* rays side by side */
     uint32_t *breaks, *rays, *fresh; /* bits */
     tyni_node *nodes;                /* TYN_RAYS_TREE, else NULL */
     tyni_sweep sweep;                /* arrays with TYN_RAYS_SWEEP, else NULL */

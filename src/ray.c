@@ -24,18 +24,33 @@ static int is_flat(const tyni_piece *piece)
     return piece->w.v.x == 0.0f && piece->w.v.y == 0.0f && piece->w.v.z == 0.0f;
 }
 
-/* ray_find without vectors: column by column, but for blocks without a change. */
-static int32_t find_columns(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
-                            int outside, uint16_t *edges)
+/* What finding edges by compares reads. A copy is none of what is written. */
+typedef struct arrays {
+    const uint16_t *threshold, *edge, *low, *high;
+} arrays;
+
+static arrays arrays_of(const tyni_finder *finder)
 {
-    const uint16_t *threshold = finder->row->threshold, *edge = finder->row->edge;
+    arrays a;
+    a.threshold = finder->row->threshold;
+    a.edge = finder->row->edge;
+    a.low = finder->blocks->low;
+    a.high = finder->blocks->high;
+    return a;
+}
+
+/* ray_find without vectors: column by column, but for blocks without a change. */
+static int32_t find_columns(const arrays *a, int32_t first, int32_t *next, int32_t end, uint32_t position, int outside,
+                            uint16_t *edges)
+{
+    const uint16_t *threshold = a->threshold, *edge = a->edge;
     const int32_t last = first + end;
     int32_t i = first + *next, n = (position < threshold[i]) != outside;
     int lit = position < threshold[i];
     edges[0] = edge[i];
     for (i++; i <= last;) {
         const int32_t w = i >> 6, behind = tyni_mini(64 * w + 64, last + 1);
-        if (position < finder->blocks->low[w] || position >= finder->blocks->high[w])
+        if (position < a->low[w] || position >= a->high[w])
             i = behind;
         for (;; i++) {
             if (lit) {

@@ -45,8 +45,9 @@ int tyni_ray_columns(const tyni_row *row, const tyni_piece *piece, const tyni_in
 /* ---- many rays of a white sun at once ---- */
 
 #define TYNI_RAY_BUNDLE 16 /* rays, a whole vector of the widest ISA */
-/* Edges of a ray at a time: there it goes into the light or out of it. An even number: then it is back outside. */
-#define TYNI_RAY_EDGES 38
+/* Edges of a ray at a time: there it goes into the light or out of it. An even number: then it is back outside. A bundle in
+ * which a ray has more is gone through again: of those among leaves 13 % have more than 38, but 1 % more than these. */
+#define TYNI_RAY_EDGES 94
 #define TYNI_RAY_SPARE 64 /* behind them, for who writes more than there are */
 
 /* Columns, the one behind the last too, and samples fit 16 bits. */

@@ -1,19 +1,18 @@
 /* ray_kernel.h - a template: rays side by side, for ray.c. */
 
 /* find by compares, 64 columns at a time. Blocks without a change are passed over 32 at a time. */
-TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first, int32_t *next, int32_t end, uint32_t position,
+TYNI_V_INLINE int32_t TYNI_V(ray_find)(const arrays *a, int32_t first, int32_t *next, int32_t end, uint32_t position,
                                        int outside, uint16_t *edges)
 {
-    const uint16_t *threshold = finder->row->threshold, *edge = finder->row->edge, *low = finder->blocks->low,
-                   *high = finder->blocks->high;
+    const uint16_t *threshold = a->threshold, *edge = a->edge;
     const int32_t start = first + *next, last = first + end;
     const uint64_t behind = ~(uint64_t)1 << (start & 63);
     int32_t n = (position < threshold[start]) != outside;
     if (v_n == 1)
-        return find_columns(finder, first, next, end, position, outside, edges);
+        return find_columns(a, first, next, end, position, outside, edges);
     edges[0] = edge[start];
     for (int32_t w = start >> 6; w <= last >> 6; w += 32) {
-        uint32_t mixed = v_above16(high + w, position) & ~v_above16(low + w, position);
+        uint32_t mixed = v_above16(a->high + w, position) & ~v_above16(a->low + w, position);
         if ((last >> 6) - w < 31)
             mixed &= ((uint32_t)2 << ((last >> 6) - w)) - 1;
         for (; mixed; mixed &= mixed - 1) {
@@ -42,8 +41,9 @@ TYNI_V_INLINE int32_t TYNI_V(ray_find)(const tyni_finder *finder, int32_t first,
 /* For one ray: its edges lie side by side. */
 static TYNI_V_TARGET int32_t TYNI_V(ray_words)(crossing *c, const tyni_finder *finder)
 {
+    const arrays a = arrays_of(finder);
     const int32_t start = c->next;
-    const int32_t n = TYNI_V(ray_find)(finder, c->piece->first, &c->next, c->last, c->position, c->outside, c->edges);
+    const int32_t n = TYNI_V(ray_find)(&a, c->piece->first, &c->next, c->last, c->position, c->outside, c->edges);
     c->looked += (c->next - start + 31) / 32;
     return n;
 }
@@ -52,13 +52,15 @@ static TYNI_V_TARGET int32_t TYNI_V(ray_words)(crossing *c, const tyni_finder *f
 static TYNI_V_TARGET int TYNI_V(ray_fill)(tyni_bundle *b, const tyni_finder *finder, const tyni_piece *piece, int outside,
                                           int32_t *looked)
 {
+    const arrays a = arrays_of(finder);
+    const int32_t rays = b->count, first = piece->first;
     int left = 0;
-    for (int32_t n = 0; n < b->count; n++) {
+    for (int32_t n = 0; n < rays; n++) {
         const int32_t last = b->last[n], start = b->next[n];
         int32_t next = start, count = 0;
         if (next <= last) {
             uint16_t *edge = b->edge + n * TYNI_RAY_EDGES;
-            count = TYNI_V(ray_find)(finder, piece->first, &next, last, b->position[n], outside, edge);
+            count = TYNI_V(ray_find)(&a, first, &next, last, b->position[n], outside, edge);
             edge[count] = TYNI_ROW_END;
             count += count & 1;
             b->next[n] = (uint16_t)next;

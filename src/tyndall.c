@@ -18,7 +18,7 @@
 typedef char context_fits[sizeof(struct tyn_context) <= TYN_CONTEXT_BYTES ? 1 : -1];
 typedef char shelf_fits[sizeof(tyni_shelf) == TYN_SHELF_BYTES ? 1 : -1];
 typedef char row_fits[sizeof(tyni_row) <= TYN_ROW_BYTES ? 1 : -1];
-typedef char bundle_fits[sizeof(tyni_bundle) <= TYN_BUNDLE_BYTES ? 1 : -1];
+typedef char bundle_fits[sizeof(tyni_bundle) <= TYN_BUNDLE_BYTES + TYN_PLANES_BYTES ? 1 : -1];
 typedef char stats_fit[sizeof(tyn_stats) <= TYN_STATS_BYTES ? 1 : -1];
 
 static void place(tyn_context *context, tyni_arena *arena)
