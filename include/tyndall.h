@@ -464,7 +464,8 @@ typedef struct tyn_config {
                               16 from 1536 on */
     float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
     float tolerance;       /* refinement on light: a stretch between rays is split while the middle of three misses the straight
-                              line by more than this part of the unshadowed light; > 0 .. 1 (never); 0: 0.01 */
+                              line by more than this part of the unshadowed light; > 0 .. 1 (never); 0: 0.01. From 0.01 on
+                              not to less than an eighth of initial_step */
     int32_t shadow_size;   /* largest shadow map of a frame, texels, 1 .. TYN_MAX_SHADOW; 0: 2048 */
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
     tyn_method method;

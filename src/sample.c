@@ -22,9 +22,9 @@ static void set(uint32_t *words, int32_t j)
     words[j >> 5] |= 1u << (j & 31);
 }
 
-static void halve(uint32_t *fresh, int32_t a, int32_t b)
+static void halve(uint32_t *fresh, int32_t a, int32_t b, int32_t least)
 {
-    if (b - a > 1)
+    if (b - a > least)
         set(fresh, a + (b - a) / 2);
 }
 
@@ -144,7 +144,7 @@ static int bent(float *const value[3], int32_t values, int32_t a, int32_t b, int
 /* Compares rays from `a` on, until none of three is fresh; returns the last of those. New rays are not in `rays` yet, which
  * tells them from the fresh ones. */
 static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks, float *const value[3],
-                           int32_t values, int32_t last, float tolerance)
+                           int32_t values, int32_t last, float tolerance, int32_t least)
 {
     int32_t before = -1, stale = 0, w = a >> 5;
     uint32_t bits = rays[w] & (0xfffffffeu << (a & 31));
@@ -158,10 +158,10 @@ static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, con
         } else {
             /* alone between breaks: so it is in the first round or never, and its start is fresh then */
             if (before < 0 && b - a > 4 && tyni_sample_bit(fresh, a) && (b == last || tyni_sample_bit(breaks, b)))
-                halve(fresh, a, b);
+                halve(fresh, a, b, least);
             if (before >= 0 && bent(value, values, before, a, b, tolerance)) {
-                halve(fresh, before, a);
-                halve(fresh, a, b);
+                halve(fresh, before, a, least);
+                halve(fresh, a, b, least);
             }
             before = a;
         }
@@ -174,11 +174,11 @@ static int32_t refine_from(int32_t a, uint32_t *fresh, const uint32_t *rays, con
 
 /* About each that is fresh. */
 static void refine_about(uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks, float *const value[3], int32_t values,
-                         int32_t first, int32_t last, float tolerance)
+                         int32_t first, int32_t last, float tolerance, int32_t least)
 {
     for (int32_t j = tyni_sample_next(fresh, first, last); j <= last;) {
         int32_t a = previous(rays, previous(rays, j, first), first);
-        a = refine_from(a, fresh, rays, breaks, value, values, last, tolerance);
+        a = refine_from(a, fresh, rays, breaks, value, values, last, tolerance, least);
         do /* the next one that is fresh */
             j = a = tyni_sample_next(fresh, a + 1, last);
         while (j <= last && !tyni_sample_bit(rays, j));
@@ -186,7 +186,7 @@ static void refine_about(uint32_t *fresh, const uint32_t *rays, const uint32_t *
 }
 
 int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, int32_t isa, float *const value[3],
-                           int32_t values, int32_t first, int32_t last, float tolerance)
+                           int32_t values, int32_t first, int32_t last, float tolerance, int32_t least)
 {
     const int32_t words = tyni_sample_words(last + 1);
     uint32_t stale = 0;
@@ -194,9 +194,9 @@ int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *brea
     for (int32_t w = first >> 5; w < words; w++)
         stale |= rays[w] & ~fresh[w];
     if (TYNI_LANES_WIDE(isa) && !stale)
-        TYNI_LANES_CALL(isa, sample_bends, (fresh, rays, breaks, value, values, first, last, tolerance));
+        TYNI_LANES_CALL(isa, sample_bends, (fresh, rays, breaks, value, values, first, last, tolerance, least));
     else
-        refine_about(fresh, rays, breaks, value, values, first, last, tolerance);
+        refine_about(fresh, rays, breaks, value, values, first, last, tolerance, least);
     for (int32_t w = 0; w < words; w++) {
         fresh[w] &= ~rays[w];
         if (!fresh[w])

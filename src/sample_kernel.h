@@ -92,7 +92,7 @@ TYNI_V_INLINE int32_t TYNI_V(sample_list)(const uint32_t *rays, const uint32_t *
 /* refine_from where all rays are fresh: three by three side by side. */
 static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(sample_bends)(uint32_t *fresh, const uint32_t *rays, const uint32_t *breaks,
                                                              float *const value[3], int32_t values, int32_t first, int32_t last,
-                                                             float tolerance)
+                                                             float tolerance, int32_t least)
 {
     const v_int none = v_iset(0), samples = v_iset(BREAK - 1), four = v_iset(4);
     float v[3][RAYS + 64 + 16];
@@ -125,8 +125,8 @@ static TYNI_V_TARGET TYNI_NOINLINE void TYNI_V(sample_bends)(uint32_t *fresh, co
             for (bits = v_word(v_mand(v_mor(off, alone), v_first(n - 1 - i))); bits; bits &= bits - 1) {
                 const int32_t k = tyni_ctz32(bits), m = base + (place[i + k] & (BREAK - 1));
                 if (bent >> k & 1u)
-                    halve(fresh, base + (place[i + k - 1] & (BREAK - 1)), m);
-                halve(fresh, m, base + (place[i + k + 1] & (BREAK - 1)));
+                    halve(fresh, base + (place[i + k - 1] & (BREAK - 1)), m, least);
+                halve(fresh, m, base + (place[i + k + 1] & (BREAK - 1)), least);
             }
         }
         /* the last two begin what is next */

@@ -226,6 +226,8 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
 {
     const tyni_pass *p = argument;
     const tyn_config *config = &p->context->config;
+    /* down to single samples leaves cost 0.4 ms of 22 more (1920x1080), for 0.01 to 0.06 dB: only where much is asked for */
+    const int32_t least = config->tolerance < 0.01f ? 1 : tyni_maxi(config->initial_step / 8, 1);
     uint64_t time[5];
     tyni_scratch s;
     tyni_slice slice;
@@ -253,8 +255,9 @@ void tyni_trace_slice(void *argument, int32_t index, int32_t worker)
     memset(s.bundle, 0, sizeof *s.bundle);
     run_rays(p, &slice, &finder, s.rays, &s);
     memcpy(s.fresh, s.rays, sizeof *s.fresh * (size_t)tyni_sample_words(slice.last + 1));
-    while (config->tolerance < 1.0f && tyni_sample_refine(s.fresh, s.rays, s.breaks, config->isa, s.value,
-                                                          tyni_maxi(p->count, 2), slice.first, slice.last, config->tolerance))
+    while (config->tolerance < 1.0f &&
+           tyni_sample_refine(s.fresh, s.rays, s.breaks, config->isa, s.value, tyni_maxi(p->count, 2), slice.first, slice.last,
+                              config->tolerance, least))
         run_rays(p, &slice, &finder, s.fresh, &s);
     time[3] = tyni_pass_now(p);
     if (tyni_debug_marks(p->frame->debug)) {
