@@ -81,6 +81,10 @@
 
 #define TYNI_PI 3.14159265358979f
 
+/* 1.5 * 2^23 + 127. A float between -126 and 127 added to it is rounded to a whole number, and the lowest 8 bits of the sum are
+ * that number as an exponent: quicker than two conversions. */
+#define TYNI_WHOLE 12583039.0f
+
 static inline int32_t tyni_mini(int32_t a, int32_t b)
 {
     return a < b ? a : b;

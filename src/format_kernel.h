@@ -58,7 +58,7 @@ TYNI_V_INLINE void TYNI_V(format_encode)(v_float *x, int32_t n)
     }
     TYNI_UNROLL_MORE
     for (int32_t c = 0; c < n; c++) {
-        p[c] = p[c] * v_pick16(tyni_composite_octave, v_iand(v_shr(v_bits(x[c]), 23), v_iset(15))) - 0.055f;
+        p[c] = p[c] * v_pick16(tyni_composite_octave, v_shr(v_bits(x[c]), 23)) - 0.055f;
         x[c] = v_select(v_le(x[c], v_set(0.0031308f)), 12.92f * x[c], p[c]);
     }
 }

@@ -45,10 +45,9 @@ float tyni_num_fog(float x)
 
 void tyni_num_fade(float x, float *left, float *lost)
 {
-    float t = tyni_maxf(x * -1.44269504f, -126.0f), r, scale, p;
-    int32_t i = (int32_t)(t - 0.5f); /* to nearest: t <= 0 */
-    r = t - (float)i;
-    scale = tyni_bits_float((uint32_t)(i + 127) << 23);
+    const float t = tyni_maxf(x * -1.44269504f, -126.0f), whole = t + TYNI_WHOLE;
+    const float r = t - (whole - TYNI_WHOLE), scale = tyni_bits_float(tyni_float_bits(whole) << 23);
+    float p;
     /* 2^r - 1 for |r| <= 1/2: with i = 0 nothing is lost to a 1 */
     p = 0.00133813021f;
     p = p * r + 0.00966636837f;

@@ -75,9 +75,8 @@ static TYNI_V_TARGET int TYNI_V(ray_fill)(tyni_bundle *b, const tyni_finder *fin
 /* 1 - 2^-x for x >= 0, to 5e-7 of itself also where x is about 0. */
 TYNI_V_INLINE v_float TYNI_V(ray_dimmed)(v_float x)
 {
-    const v_float y = v_min(x, v_set(126.0f));
-    const v_int n = v_trunc(y + 0.5f);
-    const v_float f = y - v_to_float(n), f2 = f * f, scale = v_from_bits(v_shl(v_isub(v_iset(127), n), 23));
+    const v_float y = v_min(x, v_set(126.0f)), whole = TYNI_WHOLE - y;
+    const v_float f = y - (TYNI_WHOLE - whole), f2 = f * f, scale = v_from_bits(v_shl(v_bits(whole), 23));
     /* (2^-f - 1) / f for |f| <= 1/2, interpolated at Chebyshev's points */
     const v_float q = (0.240223497f * f - 0.693147182f) + f2 * (0.00966636837f * f - 0.0555038117f - 0.00133813021f * f2);
     return (1.0f - scale) - f * scale * q;

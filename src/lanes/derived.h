@@ -216,10 +216,9 @@ TYNI_V_INLINE void v_fades(const v_float *x, int32_t n, v_float *left, v_float *
     v_float r[TYNI_CHAINS], scale[TYNI_CHAINS], p[TYNI_CHAINS];
     TYNI_UNROLL_MORE
     for (int32_t k = 0; k < n; k++) {
-        const v_float t = v_max(x[k] * -1.44269504f, v_set(-126.0f));
-        const v_int i = v_trunc(t - 0.5f);
-        r[k] = t - v_to_float(i);
-        scale[k] = v_from_bits(v_shl(v_iadd(i, v_iset(127)), 23));
+        const v_float t = v_max(x[k] * -1.44269504f, v_set(-126.0f)), whole = t + TYNI_WHOLE;
+        r[k] = t - (whole - TYNI_WHOLE);
+        scale[k] = v_from_bits(v_shl(v_bits(whole), 23));
         p[k] = v_set(0.00133813021f);
     }
     TYNI_UNROLL
@@ -238,9 +237,8 @@ TYNI_V_INLINE void v_fades(const v_float *x, int32_t n, v_float *left, v_float *
 
 TYNI_V_INLINE void v_fade(v_float x, v_float *left, v_float *lost)
 {
-    const v_float t = v_max(x * -1.44269504f, v_set(-126.0f));
-    const v_int i = v_trunc(t - 0.5f);
-    const v_float r = t - v_to_float(i), scale = v_from_bits(v_shl(v_iadd(i, v_iset(127)), 23));
+    const v_float t = v_max(x * -1.44269504f, v_set(-126.0f)), whole = t + TYNI_WHOLE;
+    const v_float r = t - (whole - TYNI_WHOLE), scale = v_from_bits(v_shl(v_bits(whole), 23));
     v_float p = v_set(0.00133813021f);
     p = p * r + 0.00966636837f;
     p = p * r + 0.0555038117f;

@@ -54,7 +54,7 @@
  *                                        bytes, 0 .. 3, of four-byte pixels stand for. All 256 of table may be read
  *     v_pick(base, index)                floats base[index], 0 <= index < v_n; all of base[0 .. v_n - 1] may be read
  *     v_ipick(base, index)               32-bit words, likewise
- *     v_pick16(base, index)              the same of a table of 16, 0 <= index < 16
+ *     v_pick16(base, index)              the same of a table of 16, by the index's lowest 4 bits
  *     v_igather(base, bytes)             32-bit words at base + bytes, at any address
  *     v_iload_apart(p, bytes)            32-bit words at p, p + bytes ...: faster than v_igather where bytes is a constant
  *     v_igather_where(base, bytes, m)    of lanes m alone, others are 0; their offsets may be anything

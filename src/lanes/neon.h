@@ -285,7 +285,7 @@ TYNI_NEON_OP float32x4_t tyni_neon_pick(const float *base, int32x4_t index)
 }
 TYNI_NEON_OP float32x4_t tyni_neon_pick16(const float *base, int32x4_t index)
 {
-    return tyni_neon_gather(base, index);
+    return tyni_neon_gather(base, tyni_neon_iand(index, vdupq_n_s32(15)));
 }
 TYNI_NEON_OP int32x4_t tyni_neon_ipick(const void *base, int32x4_t index)
 {

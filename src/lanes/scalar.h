@@ -248,7 +248,7 @@ TYNI_SCALAR_OP float tyni_scalar_pick(const float *base, int32_t index)
 }
 TYNI_SCALAR_OP float tyni_scalar_pick16(const float *base, int32_t index)
 {
-    return tyni_scalar_gather(base, index);
+    return tyni_scalar_gather(base, index & 15);
 }
 TYNI_SCALAR_OP int32_t tyni_scalar_iload_apart(const void *p, int32_t bytes)
 {

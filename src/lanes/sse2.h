@@ -287,7 +287,7 @@ TYNI_SSE2_OP __m128 tyni_sse2_pick(const float *base, __m128i index)
 }
 TYNI_SSE2_OP __m128 tyni_sse2_pick16(const float *base, __m128i index)
 {
-    return tyni_sse2_gather(base, index);
+    return tyni_sse2_gather(base, _mm_and_si128(index, _mm_set1_epi32(15)));
 }
 TYNI_SSE2_OP __m128i tyni_sse2_ipick(const void *base, __m128i index)
 {

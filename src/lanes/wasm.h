@@ -274,7 +274,7 @@ TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick(const float *base, v128_t index)
 }
 TYNI_WASM_OP tyni_wasm_float tyni_wasm_pick16(const float *base, v128_t index)
 {
-    return tyni_wasm_gather(base, index);
+    return tyni_wasm_gather(base, wasm_v128_and(index, wasm_i32x4_splat(15)));
 }
 TYNI_WASM_OP v128_t tyni_wasm_ipick(const void *base, v128_t index)
 {
