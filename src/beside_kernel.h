@@ -19,7 +19,7 @@ TYNI_V_INLINE v_mask TYNI_V(pixel_settle)(const tyni_run *r, const uint16_t *lis
 }
 
 /* Pixels of `list`, n of them and at most a vector, all in one sector of the shear grid: on their two lines as near as there is
- * a sample that fits, and then on the lines on either side of those. */
+ * a sample that fits, and then on the lines on either side of those, twice, no farther than one sample. */
 TYNI_V_INLINE void TYNI_V(pixel_look)(const tyni_pass *p, const tyni_run *r, const tyni_sector *sector, const uint16_t *list,
                                       int32_t n)
 {
@@ -41,12 +41,12 @@ TYNI_V_INLINE void TYNI_V(pixel_look)(const tyni_pass *p, const tyni_run *r, con
     share[0] = 1.0f - share[1];
     line[0] = v_iadd(line[0], v_iset(start));
     line[1] = v_iadd(line[0], v_iset(1));
-    for (int32_t outer = 0; outer < 2 && v_any(open); outer++) {
-        const int32_t farthest = outer ? 0 : TYNI_GATHER_BESIDE;
+    for (int32_t outer = 0; outer < 3 && v_any(open); outer++) {
+        const int32_t farthest = outer ? 1 : TYNI_GATHER_BESIDE;
         TYNI_UNROLL
         for (int32_t c = 0; c < 4; c++)
             l.scale[c >> 1][c & 1] = v_gather(field->scales[c & 1], line[c >> 1]);
-        for (int32_t away = 1 - outer; away <= farthest && v_any(open); away++) {
+        for (int32_t away = outer ? 0 : 1; away <= farthest && v_any(open); away++) {
             s.weight = s.low = s.high = zero;
             for (int32_t way = -away; way <= away; way += tyni_maxi(2 * away, 1)) {
                 const v_int place = v_imin(v_imax(v_iadd(sample, v_iset(way)), v_iset(0)), v_iset(most));
