@@ -1,5 +1,24 @@
 /* course_kernel.h - a template: texels of steps side by side, for who includes course.h. */
 
+/* Asks for the texels that the next course reads beside these steps, if it lies as far from this one as this from `before`.
+ * Along v each has a line of memory of its own, which neighbours share: there it is the next line, or it would be asked for
+ * each time. */
+TYNI_V_INLINE void TYNI_V(course_ahead)(const tyni_texels *t, const tyni_cells *c, const tyni_cells *before, v_int step)
+{
+    const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
+    const int32_t every = c->across ? 4 : 1;
+    const v_float most = v_set((float)((c->across ? t->height : t->width) - 1)), at = v_to_float(step);
+    const v_float shift = (c->minor - before->minor) + (c->slope - before->slope) * at, there = c->minor + c->slope * at;
+    int32_t next[v_n];
+    v_float line = v_set((float)(64 / t->bytes)), to = there + 2.0f * shift;
+    if (!c->across)
+        to = there + v_select(v_lt(shift, v_set(0.0f)), v_min(shift, -line), v_max(shift, line));
+    v_istore(next, v_iadd(v_imul(v_iadd(v_iset(c->first), v_imul(step, v_iset(c->way))), v_iset(along)),
+                          v_imul(v_trunc(v_clamp(to, v_set(0.0f), most)), v_iset(aside))));
+    for (int32_t i = 0; i < v_n; i += every)
+        TYNI_PREFETCH(t->pixels + next[i]);
+}
+
 /* Where the texels of steps are, as offsets of bytes: of the first one, and of the second, which begins at step + cut. Returns
  * where there is none: cut is 1 then, and both are the same. */
 TYNI_V_INLINE v_mask TYNI_V(course_cells)(const tyni_texels *t, const tyni_cells *c, v_int step, v_int cell[2], v_float *cut)

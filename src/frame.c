@@ -139,6 +139,7 @@ static TYNI_NOINLINE void begin_frame(tyni_pass *p, tyn_context *context, const 
         tyni_scratch s;
         tyni_pass_scratch(context, w, &s);
         memset(s.stats, 0, sizeof *s.stats);
+        memset(s.row, 0, sizeof *s.row);
     }
     memset(p, 0, sizeof *p);
     memset(&context->lamp, 0, sizeof context->lamp);

@@ -124,6 +124,8 @@ static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, c
 {
     const tyni_map *map = &lamp->maps[i];
     tyni_piece *piece = &row->pieces[row->count];
+    const tyni_cells *last = NULL;
+    tyni_cells before;
     const tyni_form *form;
     int32_t shift = 0;
     tyni_course c;
@@ -131,6 +133,7 @@ static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, c
     tyni_course_begin(&c, u, v);
     if (row->count >= TYNI_ROW_PIECES || (size_t)c.steps > w->room)
         return;
+    before = piece->cells;
     form = c.across ? &map->u : &map->v;
     piece->r.v = tyni_vec_scale(tyni_vec_mad(form->v, -c.base, map->w.v), c.sign);
     piece->r.c = c.sign * (form->c - c.base * map->w.c);
@@ -145,7 +148,10 @@ static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, c
     while (shift < 15 && piece->steps << (shift + 1) <= TYNI_ROW_END)
         shift++;
     piece->unit = 1.0f / (float)(1 << shift);
-    TYNI_LANES_CALL(w->isa, row_fill, (&map->texels, &piece->cells, c.from, &e, piece->steps, shift, w->threshold, w->edge));
+    if (row->count < row->before && before.across == piece->cells.across && before.way == piece->cells.way)
+        last = &before;
+    TYNI_LANES_CALL(w->isa, row_fill,
+                    (&map->texels, &piece->cells, last, c.from, &e, piece->steps, shift, w->threshold, w->edge));
     row->count++;
     row->columns += 2 * piece->steps;
     w->threshold += 2 * piece->steps;
@@ -162,6 +168,7 @@ void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, uint16_t *e
     float pa = tyni_slice_p(slice, slice->first), pb = tyni_slice_p(slice, slice->last), p[2], u[2], v[2];
     pen w = {isa, threshold, edge, room};
     int rising = (0.5f * (pa + pb) < slice->epipole) != lamp->behind; /* p rises towards the lit end */
+    row->before = row->count;
     row->count = 0;
     row->columns = 0;
     row->threshold = threshold;

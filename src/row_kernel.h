@@ -22,9 +22,9 @@ TYNI_V_INLINE void TYNI_V(row_pairs)(uint16_t *p, v_int a, v_int b, int32_t n)
     v_istore_n(p, low_first ? v_ior(a, v_shl(b, 16)) : v_ior(b, v_shl(a, 16)), n);
 }
 
-/* 2^-shift: the unit of edges. */
-static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cells *c, float from, const ends *e, int32_t steps,
-                                           int32_t shift, uint16_t *threshold, uint16_t *edge)
+/* last: the cells of the row before this one, or NULL; 2^-shift: the unit of edges. */
+static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cells *c, const tyni_cells *last, float from,
+                                           const ends *e, int32_t steps, int32_t shift, uint16_t *threshold, uint16_t *edge)
 {
     const float units = (float)(1 << shift);
     /* of step 0, what lies before the row: its surface would be judged from behind the camera, where lit is dark */
@@ -36,6 +36,8 @@ static TYNI_V_TARGET void TYNI_V(row_fill)(const tyni_texels *t, const tyni_cell
         v_int ta, tb, first, second, cell[2];
         v_float cut;
         const v_mask same = TYNI_V(course_cells)(t, c, step, cell, &cut);
+        if (v_n > 1 && last)
+            TYNI_V(course_ahead)(t, c, last, step);
         ta = TYNI_V(row_column)(e, at + 0.5f * (before + cut), TYNI_V(door_texels)(t, cell[0]));
         tb = ta;
         first = v_shl(step, shift);

@@ -1,10 +1,12 @@
 /* sample_kernel.h - a template: samples of a line side by side, for sample.c. */
 
-/* Of float metres along the forward axis. */
+/* Of float metres along the forward axis. What the next slices read is asked for: along y each sample has a line of memory of
+ * its own, which they share; along x they read rows below. */
 static TYNI_V_TARGET void TYNI_V(sample_depths)(float *depth, const tyni_slice *slice, const tyni_view *view,
                                                 const tyni_door *door, int32_t last_p, int32_t last_m)
 {
     const int32_t stride = (int32_t)door->stride, along = slice->along_y ? stride : 4, across = slice->along_y ? 4 : stride;
+    const int32_t ahead = slice->along_y ? 16 : 8, every = slice->along_y ? 1 : 4;
     const v_float far = v_set(view->far_depth), zero = v_set(0.0f);
     for (int32_t j = slice->first; j <= slice->last; j += v_n) {
         const int32_t n = slice->last - j + 1;
@@ -13,14 +15,18 @@ static TYNI_V_TARGET void TYNI_V(sample_depths)(float *depth, const tyni_slice *
         const v_float at = slice->p0 + v_to_float(sample) * slice->dp;
         const v_int p = v_trunc(v_clamp(at, zero, v_set((float)last_p)));
         const v_int m = v_trunc(v_clamp(slice->m0 + slice->slope * at, zero, v_set((float)last_m)));
-        int32_t p0[v_n], m0[v_n];
+        int32_t p0[v_n], m0[v_n], next[v_n];
         const uint8_t *base = door->image->pixels;
+        v_int bytes;
         v_float z;
         v_istore(p0, p);
         v_istore(m0, m);
         base += (ptrdiff_t)along * p0[0] + (ptrdiff_t)across * m0[0];
-        z = v_from_bits(v_igather(
-            base, v_iadd(v_imul(v_isub(p, v_iset(p0[0])), v_iset(along)), v_imul(v_isub(m, v_iset(m0[0])), v_iset(across)))));
+        bytes = v_iadd(v_imul(v_isub(p, v_iset(p0[0])), v_iset(along)), v_imul(v_isub(m, v_iset(m0[0])), v_iset(across)));
+        z = v_from_bits(v_igather(base, bytes));
+        v_istore(next, v_iadd(bytes, v_imul(v_imin(v_iset(ahead), v_isub(v_iset(last_m), m)), v_iset(across))));
+        for (int32_t i = 0; i < v_n && v_n > 1; i += every)
+            TYNI_PREFETCH(base + next[i]);
         z = v_select(v_lt(z, far), z, far);
         v_store_n(depth + j, v_select(v_gt(z, zero), z, zero), n);
     }
