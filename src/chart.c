@@ -79,7 +79,7 @@ static void draw_tree(chart *c, const tyni_row *row, const tyni_tree *tree, uint
                       int32_t top, int32_t height)
 {
     int32_t bands = tree->levels - TYNI_TREE_FIRST + 1, level = 0, highest;
-    int lit;
+    int lit = 0;
     if (tree->levels < TYNI_TREE_FIRST)
         return;
     for (int32_t l = TYNI_TREE_FIRST; l <= tree->levels; l++) {

@@ -44,7 +44,7 @@ TYNI_V_INLINE void TYNI_V(lookup_take)(const tyni_fourier *f, const tyni_shelf *
     const int32_t cell = tyni_clampi((int32_t)y, 0, f->columns - 1), whole = f->bases & ~15;
     const ptrdiff_t pitch = tyni_fourier_pitch(f);
     const uint8_t *row = (const uint8_t *)(s + 1) + cell * pitch;
-    const int8_t *rows[28];
+    const int8_t *rows[28] = {NULL}; /* gcc -O3 cannot tell that what is read was written */
     int32_t last = 0, count;
     t->at = 1.0f;
     t->first = 3;

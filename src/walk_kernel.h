@@ -217,7 +217,7 @@ static TYNI_V_TARGET void TYNI_V(walk_steps)(const tyni_lamp *lamp, const tyni_m
             continue;
         TYNI_V(walk_density)(m, lamp, v, t, density);
         if (tyni_view_coloured(lamp)) {
-            float at[v_n], rgb[3][v_n];
+            float at[v_n], rgb[3][v_n] = {{0.0f}};
             v_store(at, t);
             colours(lamp, v, at, tyni_mini(v_n, s->steps - i), rgb[0], v_n);
             for (int32_t c = 0; c < 3; c++)

@@ -63,6 +63,9 @@ check_compilers() {
     else
         skip 'no clang'
     fi
+    for flags in -O1 -O3 -Os; do
+        quiet "gcc $flags: builds without warnings" "$MAKE" -s -j2 B="$B/plain$flags" CC=gcc CFLAGS="$flags" all
+    done
     variant O0 gcc '-O0 -g' golden isa lanes raster_isa api encode render ray sample # the rest takes a quarter of an hour without an optimiser
     variant O3 gcc '-O3 -march=native'
     variant clang-O3 clang '-O3 -march=native' -accuracy -oracle

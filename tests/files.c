@@ -12,7 +12,7 @@ static char folder[64];
 
 const char *files_path(const char *name)
 {
-    static char names[8][256];
+    static char names[8][sizeof folder + 256];
     static int turn;
     char *path = names[turn++ % 8];
     if (!folder[0]) {
