@@ -118,6 +118,14 @@ static int coding_fits(const tyn_shadow *s)
     return s->coding == TYN_MAP_REVERSED || tyni_check_range(s->at_near, s->at_far, ends);
 }
 
+int tyni_check_shadow_stride(const tyn_shadow *s)
+{
+    const ptrdiff_t bytes = tyni_shadow_bytes(s), gap = s->stride < 0 ? -s->stride : s->stride;
+    if (gap % bytes || (gap && gap < s->size * bytes))
+        return 0;
+    return gap <= (ptrdiff_t)(INT32_MAX / tyni_shadow_height(s)); /* offsets into a map are 32 bits */
+}
+
 static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)
 {
     int32_t height = tyni_shadow_height(s), bytes = tyni_shadow_bytes(s);
@@ -127,12 +135,7 @@ static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)
         return TYN_E_LIGHT;
     if ((s->format != TYN_FORMAT_NONE && s->format != TYN_DEPTH_F32 && s->format != TYN_DEPTH_U16) || !coding_fits(s))
         return TYN_E_LIGHT;
-    if ((uintptr_t)s->depth % (uintptr_t)bytes || s->stride % bytes)
-        return TYN_E_LIGHT;
-    if (s->stride && (s->stride < 0 ? -s->stride : s->stride) < (ptrdiff_t)s->size * bytes)
-        return TYN_E_LIGHT;
-    /* offsets into a map are 32 bits */
-    if ((s->stride < 0 ? -s->stride : s->stride) > (ptrdiff_t)(INT32_MAX / height))
+    if ((uintptr_t)s->depth % (uintptr_t)bytes || !tyni_check_shadow_stride(s))
         return TYN_E_LIGHT;
     return s->size > limit || height > limit ? TYN_E_LIMIT : TYN_OK;
 }

@@ -44,6 +44,8 @@ static inline int32_t tyni_shadow_bytes(const tyn_shadow *shadow)
 {
     return shadow->format == TYN_DEPTH_U16 ? 2 : 4;
 }
+/* Whether its stride is one that a map of its size may have. */
+int tyni_check_shadow_stride(const tyn_shadow *shadow);
 /* w does not depend on the place. */
 static inline int tyni_shadow_parallel(const tyn_shadow *shadow)
 {

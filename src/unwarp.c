@@ -104,8 +104,8 @@ static int cover(const tyni_pass *p, const tyni_sector *s, float a, float b, int
     t->samples = tyni_mini((below + stride - 1) / stride, p->lines.pitch - 1) - t->sample + 1;
     for (int32_t line = 0; line < t->count; line++) {
         const uint32_t *from = p->lines.entries + (ptrdiff_t)(low + line) * p->lines.pitch + t->sample;
-        if (line + 8 < t->count)
-            TYNI_PREFETCH(from + 8 * (ptrdiff_t)p->lines.pitch);
+        if (line + 16 < t->count)
+            TYNI_PREFETCH(from + 16 * (ptrdiff_t)p->lines.pitch);
         for (int32_t j = 0; j < t->samples; j++)
             t->row[j][line] = from[j];
     }

@@ -259,30 +259,39 @@ static void draw_surface(given *g, tyn_raster *raster, tyn_raster *other, const 
 
 static void draw_shadow(given *g, tyn_raster *raster, tyn_raster *other, const tyn_executor *executor)
 {
-    int32_t height = g->target.height ? g->target.height : g->target.size;
-    size_t texels =
-        g->target.size > 0 && g->target.size <= 64 && height > 0 && height <= 64 ? (size_t)g->target.size * (size_t)height : 0;
-    float *map[2];
+    tyn_shadow *t = &g->target;
+    int32_t height = t->height ? t->height : t->size;
+    const int here = t->size > 0 && t->size <= 64 && height > 0 && height <= 64;
+    ptrdiff_t apart = t->stride < 0 ? -t->stride : t->stride;
+    float *map[2], *first[2];
     tyn_status status;
-    if (!texels && g->target.size > 64 && g->target.size <= TYN_MAX_SHADOW) /* legal, but there is no room here */
-        g->target.size = 0;
-    if (!texels && height > 64 && height <= TYN_MAX_SHADOW)
-        g->target.height = -1;
+    size_t bytes;
+    if (!here && t->size > 64 && t->size <= TYN_MAX_SHADOW) /* legal, but there is no room here */
+        t->size = 0;
+    if (!here && height > 64 && height <= TYN_MAX_SHADOW)
+        t->height = -1;
+    if (apart > 1024)
+        t->stride = apart = 0;
+    apart = apart ? apart : 4 * t->size;
+    bytes = here ? (size_t)(apart * height) : 0;
     for (int i = 0; i < 2; i++) {
-        map[i] = fuzz_memory(texels * sizeof(float));
-        memset(map[i], 0x5a, texels * sizeof(float));
+        map[i] = fuzz_memory(bytes);
+        memset(map[i], 0x5a, bytes);
+        first[i] = t->stride < 0 && here ? (float *)(void *)((uint8_t *)map[i] + apart / 4 * 4 * (height - 1)) : map[i];
     }
-    status = tyn_raster_shadow(raster, &g->target, map[0], g->mesh, g->surface.mesh_count, NULL, NULL, NULL, &g->stats);
+    status = tyn_raster_shadow(raster, t, first[0], g->mesh, g->surface.mesh_count, NULL, NULL, NULL, &g->stats);
     if (status != TYN_OK) {
-        FUZZ_CHECK(memcmp(map[0], map[1], texels * sizeof(float)) == 0);
+        FUZZ_CHECK(memcmp(map[0], map[1], bytes) == 0);
         return;
     }
-    FUZZ_CHECK(texels > 0);
-    for (size_t i = 0; i < texels; i++)
-        FUZZ_CHECK(map[0][i] >= 0 && map[0][i] <= 1);
-    FUZZ_CHECK(tyn_raster_shadow(other, &g->target, map[1], g->mesh, g->surface.mesh_count, executor, NULL, NULL, NULL) ==
-               TYN_OK);
-    FUZZ_CHECK(memcmp(map[0], map[1], texels * sizeof(float)) == 0);
+    FUZZ_CHECK(bytes > 0);
+    for (int32_t y = 0; y < height; y++)
+        for (int32_t x = 0; x < apart / 4; x++) {
+            const float texel = map[0][apart / 4 * y + x];
+            FUZZ_CHECK(x < t->size ? texel >= 0 && texel <= 1 : texel > 1);
+        }
+    FUZZ_CHECK(tyn_raster_shadow(other, t, first[1], g->mesh, g->surface.mesh_count, executor, NULL, NULL, NULL) == TYN_OK);
+    FUZZ_CHECK(memcmp(map[0], map[1], bytes) == 0);
 }
 
 void fuzz_raster(const uint8_t *data, size_t size)

@@ -284,6 +284,43 @@ static void test_shadow_door(void)
     easel_free(&e);
 }
 
+/* Any stride gives the same texels, and what lies between rows stays. */
+static void test_shadow_stride(void)
+{
+    static const float high[9] = {-1, -1, 0.5f, 1, -1, 0.5f, 0, 1, 0.25f};
+    static float map[7 * 11], gapped[7 * 16], before[7 * 16];
+    tyn_shadow s = {.size = 11, .height = 7, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+    easel e = easel_new(11, 11, 64, 1, 0);
+    tyn_mesh mesh = easel_mesh(high, 1);
+    TEST("raster: shadow maps with gaps between their rows");
+    mesh.indices = order;
+    for (int i = 0; i < 7 * 16; i++)
+        before[i] = (float)(i + 7);
+    CHECK(tyn_raster_shadow(e.raster, &s, map, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_OK);
+    for (int way = -1; way <= 1; way += 2) {
+        int different = 0, drawn = 0;
+        memcpy(gapped, before, sizeof gapped);
+        s.stride = way * 16 * (int)sizeof(float);
+        CHECK(tyn_raster_shadow(e.raster, &s, way > 0 ? gapped : gapped + 6 * 16, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_OK);
+        for (int y = 0; y < 7; y++)
+            for (int x = 0; x < 16; x++) {
+                const int i = 16 * (way > 0 ? y : 6 - y) + x;
+                const float want = x < 11 ? map[11 * y + x] : before[i];
+                different += memcmp(&gapped[i], &want, sizeof want) != 0;
+                drawn += x < 11 && want > 0.0f;
+            }
+        CHECK(different == 0 && drawn > 3);
+    }
+    for (int i = 0; i < 5; i++) {
+        static const ptrdiff_t strides[] = {40, -40, 46, -66, INT32_MAX / 7 / 4 * 4 + 4};
+        memcpy(gapped, before, sizeof gapped);
+        s.stride = strides[i];
+        CHECK(tyn_raster_shadow(e.raster, &s, gapped, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_E_LIGHT);
+        CHECK(memcmp(gapped, before, sizeof gapped) == 0);
+    }
+    easel_free(&e);
+}
+
 static uint64_t tick(void *context)
 {
     return *(uint64_t *)context += 10;
@@ -307,5 +344,6 @@ void test_raster_door(void)
     test_memory();
     test_surface_door();
     test_shadow_door();
+    test_shadow_stride();
     test_clock();
 }

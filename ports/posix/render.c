@@ -124,13 +124,25 @@ static float reach_from(const scene *s, const float position[3], float otherwise
     return sqrtf(sum) > 0.0f && sqrtf(sum) <= FLT_MAX ? sqrtf(sum) : otherwise;
 }
 
+/* Room for a map, and its stride: what is written to files has no gaps. NULL: no memory. */
+static float *map_new(work *w, tyn_shadow *shadow)
+{
+    const size_t rows = (size_t)shadow->size;
+    size_t bytes;
+    float *map;
+    shadow->stride = w->settings->want_maps ? 0 : shafts_map_stride(shadow->size);
+    bytes = shadow->stride ? (size_t)shadow->stride : rows * sizeof(float);
+    map = bytes < SIZE_MAX / rows ? malloc(bytes * rows) : NULL;
+    w->out->shadow_bytes += map ? bytes * rows : 0;
+    return map;
+}
+
 /* After the depth is known: a map that covers just what is seen makes the best of its texels. */
 static int draw_shadow(work *w, int32_t i, const tyn_image *depth)
 {
     const scene *s = w->s;
     tyn_light *l = &w->lights[i];
     render_light *r = &w->out->lights[i];
-    size_t texels = (size_t)w->config.shadow_size * (size_t)w->config.shadow_size;
     int32_t faces = s->lights[i].point ? RENDER_FACES : 1;
     tyn_status status;
     for (int32_t k = 0; k < faces; k++)
@@ -148,10 +160,9 @@ static int draw_shadow(work *w, int32_t i, const tyn_image *depth)
         r->faces[0] = l->shadow;
     for (int32_t k = 0; k < faces; k++) {
         float **map = &r->maps[k];
-        *map = texels < SIZE_MAX / sizeof(float) ? malloc(texels * sizeof(float)) : NULL;
+        *map = map_new(w, &r->faces[k]);
         if (!*map)
             return error_memory(w->error);
-        w->out->shadow_bytes += texels * sizeof(float);
         status = tyn_raster_shadow(w->raster, &r->faces[k], *map, s->meshes, s->mesh_count, pool_executor(w->threads), NULL,
                                    NULL, NULL);
         if (status != TYN_OK)
@@ -164,7 +175,6 @@ static int draw_shadow(work *w, int32_t i, const tyn_image *depth)
 
 static int draw_rectified_maps(work *w, int32_t i, render_light *r)
 {
-    size_t texels = (size_t)w->config.shadow_size * (size_t)w->config.shadow_size;
     tyn_status status;
     for (int32_t k = 0; k < r->count; k++) {
         tyn_shadow blank = {0};
@@ -173,10 +183,9 @@ static int draw_rectified_maps(work *w, int32_t i, render_light *r)
     }
     status = tyn_shadow_fit_rectified(r->faces, r->count, &w->lights[i], &w->camera, 0.0f, 0.0f);
     for (int32_t k = 0; k < r->count && status == TYN_OK; k++) {
-        r->maps[k] = malloc(texels * sizeof(float));
+        r->maps[k] = map_new(w, &r->faces[k]);
         if (!r->maps[k])
             return error_memory(w->error);
-        w->out->shadow_bytes += texels * sizeof(float);
         status = tyn_raster_shadow(w->raster, &r->faces[k], r->maps[k], w->s->meshes, w->s->mesh_count,
                                    pool_executor(w->threads), NULL, NULL, NULL);
         r->faces[k].depth = r->maps[k];

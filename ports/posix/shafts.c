@@ -59,6 +59,12 @@ tyn_status shafts_config(tyn_config *c, const render_settings *r, int32_t width,
     return TYN_OK;
 }
 
+ptrdiff_t shafts_map_stride(int32_t size)
+{
+    const ptrdiff_t bytes = (ptrdiff_t)size * (ptrdiff_t)sizeof(float);
+    return bytes % 4096 ? bytes : bytes + 64;
+}
+
 tyn_light shafts_light(const scene_light *from)
 {
     tyn_light l = from->light;

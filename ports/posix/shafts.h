@@ -10,6 +10,9 @@ void *shafts_aligned(size_t bytes, void **block);
 /* What the settings ask for, in an image of this size. lights, maps, textured and workers are left to the caller. */
 tyn_status shafts_config(tyn_config *config, const render_settings *settings, int32_t width, int32_t height);
 
+/* Bytes from row to row of a shadow map that is made here; see tyn_shadow.stride. */
+ptrdiff_t shafts_map_stride(int32_t size);
+
 /* What the light is, but for its shadow maps. */
 tyn_light shafts_light(const scene_light *from);
 

@@ -9,6 +9,7 @@
 #include <sys/mman.h>
 #include <time.h>
 
+#include "shafts.h"
 #include "showcase.h"
 
 void bench_die(const char *what)
@@ -105,7 +106,7 @@ void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int
     if (showcase_scene(name, &s->scene))
         bench_die("no such scene");
     s->pixels = (size_t)s->width * (size_t)s->height;
-    s->map = block_of((size_t)shadow_size * (size_t)shadow_size * sizeof *s->map);
+    s->map = block_of((size_t)shafts_map_stride(shadow_size) * (size_t)shadow_size);
     s->depth = block_of(s->pixels * sizeof *s->depth);
     s->colour = block_of(s->pixels * 3 * sizeof *s->colour);
     s->colour8 = block_of(s->pixels * 4);
@@ -122,6 +123,7 @@ void stage_set_up(stage *s, const char *name, int32_t width, int32_t height, int
     bench_need(scene_camera_make(&s->scene, s->width, s->height, &s->camera), "camera");
     s->light = s->scene.lights[0].light;
     s->light.shadow.size = shadow_size;
+    s->light.shadow.stride = shafts_map_stride(shadow_size);
     stage_shadow(s, threads);
     stage_surface(s, threads);
 }

@@ -314,8 +314,8 @@ static tyn_status check_shadow(const tyn_raster *raster, const tyn_shadow *shado
     height = tyni_shadow_height(shadow);
     if (shadow->size < 1 || shadow->size > TYN_MAX_SHADOW || !tyni_check_finite(m, 16) || !invertible(m))
         return TYN_E_LIGHT;
-    if (height < 1 || height > TYN_MAX_SHADOW || shadow->coding != TYN_MAP_REVERSED || shadow->stride ||
-        (shadow->format != TYN_FORMAT_NONE && shadow->format != TYN_DEPTH_F32))
+    if (height < 1 || height > TYN_MAX_SHADOW || shadow->coding != TYN_MAP_REVERSED ||
+        (shadow->format != TYN_FORMAT_NONE && shadow->format != TYN_DEPTH_F32) || !tyni_check_shadow_stride(shadow))
         return TYN_E_LIGHT;
     if (m[12] == 0.0f && m[13] == 0.0f && m[14] == 0.0f && m[15] < 0.0f) /* nothing is in front of this light */
         return TYN_E_LIGHT;
@@ -341,7 +341,7 @@ tyn_status tyn_raster_shadow(tyn_raster *raster, const tyn_shadow *shadow, float
     tyni_raster_view_shadow(&pass.view, shadow);
     pass.kind = TYNI_RASTER_SHADOW;
     pass.depth = (uint8_t *)depth;
-    pass.depth_stride = (ptrdiff_t)shadow->size * (ptrdiff_t)sizeof *depth;
+    pass.depth_stride = shadow->stride ? shadow->stride : (ptrdiff_t)shadow->size * (ptrdiff_t)sizeof *depth;
     status = tyni_raster_run(&pass);
     if (status == TYN_OK)
         report(&pass, stats, clock ? clock(clock_context) - begun : 0);
