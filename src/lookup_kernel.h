@@ -44,7 +44,7 @@ TYNI_V_INLINE void TYNI_V(lookup_take)(const tyni_fourier *f, const tyni_shelf *
     const int32_t cell = tyni_clampi((int32_t)y, 0, f->columns - 1), whole = f->bases & ~15;
     const ptrdiff_t pitch = tyni_fourier_pitch(f);
     const uint8_t *row = (const uint8_t *)(s + 1) + cell * pitch;
-    const int8_t *rows[28] = {NULL}; /* gcc -O3 cannot tell that what is read was written */
+    const int8_t *rows[28];
     int32_t last = 0, count;
     t->at = 1.0f;
     t->first = 3;
@@ -58,20 +58,18 @@ TYNI_V_INLINE void TYNI_V(lookup_take)(const tyni_fourier *f, const tyni_shelf *
     }
     last = tyni_mini(last + 1, f->references - 1);
     row += (ptrdiff_t)(t->first * f->channels) * TYNI_FOURIER_LENGTH(f->bases);
-    t->count = count = (last + 1 - t->first) * f->channels;
-    for (int32_t i = 0; i < count; i++)
-        rows[i] = (const int8_t *)row + i * TYNI_FOURIER_LENGTH(f->bases);
-    for (int32_t i = 0; i < count && t->at < 1.0f; i++)
-        rows[count + i] = rows[i] - pitch;
-    count += t->at < 1.0f ? count : 0;
+    t->count = (last + 1 - t->first) * f->channels;
+    count = t->at < 1.0f ? 2 * t->count : t->count;
     for (int32_t i = 0; i < count; i++) {
+        const uint8_t *p = i < t->count ? row + i * TYNI_FOURIER_LENGTH(f->bases)
+                                        : row + (i - t->count) * TYNI_FOURIER_LENGTH(f->bases) - pitch;
         uint16_t part[2];
-        memcpy(part, rows[i], sizeof part);
+        memcpy(part, p, sizeof part);
         t->word[i] = (int32_t)((uint32_t)part[1] << 16 | part[0]);
-        rows[i] += sizeof part;
+        rows[i] = (const int8_t *)p + sizeof part;
     }
     for (int32_t i = count; i < count + 3; i++)
-        rows[i] = rows[0]; /* sums come in fours */
+        rows[i] = (const int8_t *)row; /* sums come in fours */
     for (int32_t i = 0; i < count; i += 4)
         v_dots8(a, rows + i, whole, t->sum + i);
     for (int32_t k = whole; k < f->bases; k++)
