@@ -1,21 +1,20 @@
 /* course_kernel.h - a template: texels of steps side by side, for who includes course.h. */
 
-/* Asks for the texels that the next course reads beside these steps, if it lies as far from this one as this from `before`.
- * Along v each has a line of memory of its own, which neighbours share: there it is the next line, or it would be asked for
- * each time. */
+/* Asks for the texels beside these steps that the next courses read, which lie as far from this one as this from `before`, and
+ * as far again. Along v each step has a line of memory of its own, which neighbours share: there it is the line beside it. */
 TYNI_V_INLINE void TYNI_V(course_ahead)(const tyni_texels *t, const tyni_cells *c, const tyni_cells *before, v_int step)
 {
     const int32_t pitch = (int32_t)t->pitch, along = c->across ? t->bytes : pitch, aside = c->across ? pitch : t->bytes;
-    const int32_t every = c->across ? 4 : 1;
+    const int32_t line = 64 / t->bytes;
     const v_float most = v_set((float)((c->across ? t->height : t->width) - 1)), at = v_to_float(step);
     const v_float shift = (c->minor - before->minor) + (c->slope - before->slope) * at, there = c->minor + c->slope * at;
     int32_t next[v_n];
-    v_float line = v_set((float)(64 / t->bytes)), to = there + 2.0f * shift;
+    v_float to = there + 2.0f * shift;
     if (!c->across)
-        to = there + v_select(v_lt(shift, v_set(0.0f)), v_min(shift, -line), v_max(shift, line));
+        to = there + v_select(v_lt(shift, v_set(0.0f)), v_min(shift, v_set(-(float)line)), v_max(shift, v_set((float)line)));
     v_istore(next, v_iadd(v_imul(v_iadd(v_iset(c->first), v_imul(step, v_iset(c->way))), v_iset(along)),
                           v_imul(v_trunc(v_clamp(to, v_set(0.0f), most)), v_iset(aside))));
-    for (int32_t i = 0; i < v_n; i += every)
+    for (int32_t i = 0; i < v_n; i += c->across ? 4 : 1)
         TYNI_PREFETCH(t->pixels + next[i]);
 }
 

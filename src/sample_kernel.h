@@ -6,7 +6,7 @@ static TYNI_V_TARGET void TYNI_V(sample_depths)(float *depth, const tyni_slice *
                                                 const tyni_door *door, int32_t last_p, int32_t last_m)
 {
     const int32_t stride = (int32_t)door->stride, along = slice->along_y ? stride : 4, across = slice->along_y ? 4 : stride;
-    const int32_t ahead = slice->along_y ? 16 : 8, every = slice->along_y ? 1 : 4;
+    const int32_t ahead = slice->along_y ? 16 : 8;
     const v_float far = v_set(view->far_depth), zero = v_set(0.0f);
     for (int32_t j = slice->first; j <= slice->last; j += v_n) {
         const int32_t n = slice->last - j + 1;
@@ -25,7 +25,7 @@ static TYNI_V_TARGET void TYNI_V(sample_depths)(float *depth, const tyni_slice *
         bytes = v_iadd(v_imul(v_isub(p, v_iset(p0[0])), v_iset(along)), v_imul(v_isub(m, v_iset(m0[0])), v_iset(across)));
         z = v_from_bits(v_igather(base, bytes));
         v_istore(next, v_iadd(bytes, v_imul(v_imin(v_iset(ahead), v_isub(v_iset(last_m), m)), v_iset(across))));
-        for (int32_t i = 0; i < v_n && v_n > 1; i += every)
+        for (int32_t i = 0; i < v_n && v_n > 1; i += slice->along_y ? 1 : 4)
             TYNI_PREFETCH(base + next[i]);
         z = v_select(v_lt(z, far), z, far);
         v_store_n(depth + j, v_select(v_gt(z, zero), z, zero), n);
