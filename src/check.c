@@ -60,6 +60,12 @@ void *tyni_image_row(const tyn_image *image, int32_t y)
     return (uint8_t *)image->pixels + tyni_image_stride(image) * (ptrdiff_t)y;
 }
 
+/* Of the least stride that there is, too. */
+static size_t apart_of(ptrdiff_t stride)
+{
+    return stride < 0 ? (size_t)0 - (size_t)stride : (size_t)stride;
+}
+
 tyn_status tyni_check_image(const tyn_image *image, uint32_t formats)
 {
     ptrdiff_t stride;
@@ -76,7 +82,8 @@ tyn_status tyni_check_image(const tyn_image *image, uint32_t formats)
     stride = tyni_image_stride(image);
     if (stride % align)
         return TYN_E_ALIGN;
-    if ((stride < 0 ? -stride : stride) < (ptrdiff_t)image->width * tyn_format_bytes(image->format))
+    if (apart_of(stride) < (size_t)image->width * (size_t)tyn_format_bytes(image->format) ||
+        apart_of(stride) > (size_t)(PTRDIFF_MAX / image->height))
         return TYN_E_IMAGE;
     return TYN_OK;
 }
@@ -120,10 +127,10 @@ static int coding_fits(const tyn_shadow *s)
 
 int tyni_check_shadow_stride(const tyn_shadow *s)
 {
-    const ptrdiff_t bytes = tyni_shadow_bytes(s), gap = s->stride < 0 ? -s->stride : s->stride;
-    if (gap % bytes || (gap && gap < s->size * bytes))
+    const size_t bytes = (size_t)tyni_shadow_bytes(s), apart = apart_of(s->stride);
+    if (apart % bytes || (apart && apart < (size_t)s->size * bytes))
         return 0;
-    return gap <= (ptrdiff_t)(INT32_MAX / tyni_shadow_height(s)); /* offsets into a map are 32 bits */
+    return apart <= (size_t)(INT32_MAX / tyni_shadow_height(s)); /* offsets into a map are 32 bits */
 }
 
 static tyn_status check_shadow(const tyn_shadow *s, int32_t limit)

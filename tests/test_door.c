@@ -337,6 +337,9 @@ static tyn_status spoil(tyn_frame *f, tyn_shadow *m, int n)
         CASE(45, TYN_E_LIGHT, m->bias = 65)
         CASE(46, TYN_E_IMAGE, f->camera.kind = TYN_CAMERA_ORTHOGRAPHIC; f->depth_coding.kind = TYN_CODING_PROJECTED;
              f->depth_coding.far_depth = HUGE_VALF)
+        CASE(47, TYN_E_IMAGE, f->depth.stride = PTRDIFF_MIN)
+        CASE(48, TYN_E_IMAGE, f->depth.stride = PTRDIFF_MAX / 4 * 4)
+        CASE(49, TYN_E_LIGHT, m->stride = PTRDIFF_MIN)
 #undef CASE
     default:
         return TYN_OK;
@@ -366,7 +369,7 @@ static void test_statuses(void)
         guard_free(&share);
         guard_free(&scatter);
     } while (expected != TYN_OK);
-    CHECK(n == 48);
+    CHECK(n == 51);
     rig_free(r);
 }
 

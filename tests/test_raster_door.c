@@ -311,8 +311,8 @@ static void test_shadow_stride(void)
             }
         CHECK(different == 0 && drawn > 3);
     }
-    for (int i = 0; i < 5; i++) {
-        static const ptrdiff_t strides[] = {40, -40, 46, -66, INT32_MAX / 7 / 4 * 4 + 4};
+    for (int i = 0; i < 6; i++) {
+        static const ptrdiff_t strides[] = {40, -40, 46, -66, INT32_MAX / 7 / 4 * 4 + 4, PTRDIFF_MIN};
         memcpy(gapped, before, sizeof gapped);
         s.stride = strides[i];
         CHECK(tyn_raster_shadow(e.raster, &s, gapped, &mesh, 1, NULL, NULL, NULL, NULL) == TYN_E_LIGHT);
