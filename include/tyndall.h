@@ -466,7 +466,7 @@ typedef struct tyn_config {
     float break_threshold; /* jump of depth, relative to the nearer, that counts as a break: > 0 .. 1; 0: 0.06 */
     float tolerance;       /* refinement on light: a stretch between rays is split while the middle of three misses the straight
                               line by more than this part of the unshadowed light; > 0 .. 1 (never); 0: 0.01. From 0.01 on
-                              not to less than an eighth of initial_step */
+                              what is an eighth of initial_step long or less is not split */
     int32_t shadow_size;   /* largest shadow map of a frame, texels, 1 .. TYN_MAX_SHADOW; 0: 2048 */
     int32_t steps;         /* of TYN_RAYS_STEPS: steps per ray, 1 .. 4096; 0: 150 */
     tyn_method method;
@@ -557,6 +557,7 @@ tyn_status tyn_measure(const tyn_config *config, size_t *bytes);
 #define TYN_CONTEXT_BYTES 2688
 #define TYN_STATS_BYTES 256
 #define TYN_ROW_BYTES 1152
+/* What pixels have before their planes, and the least of the planes. A slice's rays lie over both. */
 #define TYN_BUNDLE_BYTES 2176
 #define TYNI_BYTES(count, size) (((size_t)(count) * (size) + (TYN_ALIGNMENT - 1)) / TYN_ALIGNMENT * TYN_ALIGNMENT)
 #define TYNI_RUN(samples) ((size_t)((samples) < 1024 ? ((samples) + 1) / 2 : 512))

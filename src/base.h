@@ -20,8 +20,8 @@
 /* x87 registers round later than float, and no pragma helps. 16: only half floats are widened. */
 #if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
 #error "tyndall: floats are calculated in wider registers, which gives other pictures; 32-bit x86: -msse2 -mfpmath=sse"
-#elif defined(__FAST_MATH__)
-#error "tyndall: -ffast-math gives other pictures and has no NaN; build tyndall without it"
+#elif defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__)
+#error "tyndall: -ffast-math and -fassociative-math give other pictures; build tyndall without them"
 #endif
 
 /* A broken rule inside the library, never bad input: that is checked at the door and gets a status. */
@@ -82,7 +82,7 @@
 #define TYNI_PI 3.14159265358979f
 
 /* 1.5 * 2^23 + 127. A float between -126 and 127 added to it is rounded to a whole number, and the lowest 8 bits of the sum are
- * that number as an exponent: quicker than two conversions. */
+ * that number as an exponent: quicker than two conversions. Needs rounding to nearest, and sums in the order as written. */
 #define TYNI_WHOLE 12583039.0f
 
 static inline int32_t tyni_mini(int32_t a, int32_t b)

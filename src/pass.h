@@ -28,7 +28,7 @@ typedef struct tyni_scratch {
     tyni_blocks blocks;              /* of the thresholds */
     float *depth;                    /* points */
     float *value[3];                 /* points: visibility */
-    tyni_bundle *bundle;             /* rays side by side, for slices: TYN_BUNDLE_BYTES, and what the planes have behind it */
+    tyni_bundle *bundle;             /* rays side by side, for slices: over the planes, too. Of pixels, TYN_BUNDLE_BYTES */
     float *plane[TYNI_PASS_PLANES];  /* tyni_pass_run each, for pixels */
     uint32_t *breaks, *rays, *fresh; /* bits */
     tyni_node *nodes;                /* TYN_RAYS_TREE, else NULL */

@@ -48,8 +48,8 @@ int32_t tyni_sample_next(const uint32_t *words, int32_t j, int32_t last);
 /* Refinement on light (method.md section 4): where the middle of three neighbouring rays lies off the line through the outer
  * two by more than `tolerance` in any of `values` values, both halves get a ray in the middle; so does a stretch between breaks
  * that has no rays but its ends. Nothing is computed just to be tested. `fresh`: the rays since the last call, at first all;
- * it gets the bits of the new ones, `rays` too. A half of `least` samples or fewer gets none, least > 0. Returns how many; call
- * again with their values until it is 0. */
+ * it gets the bits of the new ones, `rays` too. A stretch of `least` samples or fewer, least > 0, gets none. Returns how many;
+ * call again with their values until it is 0. */
 int32_t tyni_sample_refine(uint32_t *fresh, uint32_t *rays, const uint32_t *breaks, int32_t isa, float *const value[3],
                            int32_t count, int32_t first, int32_t last, float tolerance, int32_t least);
 

@@ -272,7 +272,7 @@ static void draw_shadow(given *g, tyn_raster *raster, tyn_raster *other, const t
         t->height = -1;
     if (apart > 1024)
         t->stride = apart = 0;
-    apart = apart ? apart : 4 * t->size;
+    apart = apart ? apart : here ? 4 * (ptrdiff_t)t->size : 0;
     bytes = here ? (size_t)(apart * height) : 0;
     for (int i = 0; i < 2; i++) {
         map[i] = fuzz_memory(bytes);

@@ -195,6 +195,23 @@ static void test_tolerance(int say)
     CHECK(1.15 * before <= first); /* near lamps, depth alone knows most of it */
 }
 
+/* From a tolerance of 0.01 on short stretches are left as they are. */
+static void test_short_stretches(void)
+{
+    int64_t rays[2] = {0, 0};
+    TEST("tolerance: from 0.01 on an eighth of the initial step is not split");
+    for (int i = 0; i < 2; i++) {
+        tyn_config config = quality();
+        config.initial_step = 64;
+        config.tolerance = i ? 0.00999f : 0.01f;
+        for (int n = 0; n < WHITE; n++) {
+            error_of(n, &config);
+            rays[i] += rigs[n]->stats.rays;
+        }
+    }
+    CHECK(rays[0] > 0 && (double)rays[1] > 1.05 * (double)rays[0]);
+}
+
 /* ED10's weights and taps: another choice is another picture, none is much worse. */
 static void test_kernels(int say)
 {
@@ -279,6 +296,7 @@ void test_gather(void)
         test_combinations(say);
         test_monotone(say);
         test_tolerance(say);
+        test_short_stretches();
         test_kernels(say);
         test_budget(say);
     }

@@ -179,7 +179,7 @@ static void test_refine(void)
     for (int n = 0; n < 400; n++) {
         int last = 80 + (int)(test_random() % (MOST - 80)), rounds = 0, total = 0;
         int first = n % 3 ? 0 : (int)(test_random() % (uint32_t)(last / 2 - 32)); /* well before the step */
-        int32_t least = 1 + (int)(test_random() % 3u);
+        int32_t least = 1 << test_random() % 4u;
         float bend = test_random_float(0, 4e-4f), tolerance = test_random_float(0.002f, 0.05f);
         memset(breaks, 0, sizeof breaks);
         memset(rays, 0, sizeof rays);
