@@ -116,6 +116,7 @@ typedef struct pen {
     uint16_t *threshold;
     uint16_t *edge;
     size_t room;
+    int32_t before; /* pieces of the row that was here: their cells are there until new ones take their place */
 } pen;
 
 /* The part of the row on map i. */
@@ -148,7 +149,7 @@ static void add_piece(tyni_row *row, pen *w, const tyni_lamp *lamp, int32_t i, c
     while (shift < 15 && piece->steps << (shift + 1) <= TYNI_ROW_END)
         shift++;
     piece->unit = 1.0f / (float)(1 << shift);
-    if (row->count < row->before && before.across == piece->cells.across && before.way == piece->cells.way)
+    if (row->count < w->before && before.across == piece->cells.across && before.way == piece->cells.way)
         last = &before;
     TYNI_LANES_CALL(w->isa, row_fill,
                     (&map->texels, &piece->cells, last, c.from, &e, piece->steps, shift, w->threshold, w->edge));
@@ -166,9 +167,8 @@ void tyni_row_build(tyni_row *row, int32_t isa, uint16_t *threshold, uint16_t *e
     fan open[TYNI_ROW_PIECES + 2] = {{{0.0f, 1.0f}, {1.0f, 0.0f}}, {{1.0f, 0.0f}, {0.0f, -1.0f}}};
     int32_t fans = tyni_view_kind(lamp) == TYN_LIGHT_DIRECTIONAL ? 1 : 2;
     float pa = tyni_slice_p(slice, slice->first), pb = tyni_slice_p(slice, slice->last), p[2], u[2], v[2];
-    pen w = {isa, threshold, edge, room};
+    pen w = {isa, threshold, edge, room, row->count};
     int rising = (0.5f * (pa + pb) < slice->epipole) != lamp->behind; /* p rises towards the lit end */
-    row->before = row->count;
     row->count = 0;
     row->columns = 0;
     row->threshold = threshold;

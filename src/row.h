@@ -40,7 +40,6 @@ typedef struct tyni_piece {
  * last one were it is known what the next one will read. */
 typedef struct tyni_row {
     int32_t count;   /* of pieces; 0: the slice misses all maps */
-    int32_t before;  /* of pieces of the row that was here before: their cells are still there until these are built */
     int32_t columns; /* of all pieces, one after the other */
     /* Both are read to the end of a block of 64, up to 63 entries behind the last. */
     const uint16_t *threshold; /* of these; lit for a ray at position q if q < threshold */

@@ -127,12 +127,10 @@ static float reach_from(const scene *s, const float position[3], float otherwise
 /* Room for a map, and its stride: what is written to files has no gaps. NULL: no memory. */
 static float *map_new(work *w, tyn_shadow *shadow)
 {
-    const size_t rows = (size_t)shadow->size;
-    size_t bytes;
-    float *map;
-    shadow->stride = w->settings->want_maps ? 0 : shafts_map_stride(shadow->size);
-    bytes = shadow->stride ? (size_t)shadow->stride : rows * sizeof(float);
-    map = bytes < SIZE_MAX / rows ? malloc(bytes * rows) : NULL;
+    const size_t rows = (size_t)shadow->size,
+                 bytes = w->settings->want_maps ? rows * sizeof(float) : (size_t)shafts_map_stride(shadow->size);
+    float *map = bytes < SIZE_MAX / rows ? malloc(bytes * rows) : NULL;
+    shadow->stride = (ptrdiff_t)bytes;
     w->out->shadow_bytes += map ? bytes * rows : 0;
     return map;
 }
